@@ -1,0 +1,77 @@
+#include "cli/arguments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace probewarp {
+
+namespace {
+
+/// The numbers of a comma-separated list; empty where one is none.
+std::vector<double> numbers(std::string_view text) {
+    std::vector<double> values;
+    while (true) {
+        const std::size_t comma = std::min(text.find(','), text.size());
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + comma, value);
+        if (error != std::errc() || end != text.data() + comma || !(std::abs(value) <= 1e7)) return {};
+        values.push_back(value);
+        if (comma == text.size()) return values;
+        text.remove_prefix(comma + 1);
+    }
+}
+
+}  // namespace
+
+Probe parse_probe(const std::string& text, const Document& document) {
+    const auto wrong = [&text] {
+        return UsageError(fmt::format("--probe {}: expected RX,RY[:X,Y[,DEG[,RADIUS]]] in image pixels and degrees, "
+                                      "with a radius above 0",
+                                      text));
+    };
+    const std::size_t colon = text.find(':');
+    const auto rest = numbers(std::string_view(text).substr(0, colon));
+    if (rest.size() != 2) throw wrong();
+    Probe probe = new_probe(document, {rest[0], rest[1]});
+    if (colon == std::string::npos) return probe;
+    const auto now = numbers(std::string_view(text).substr(colon + 1));
+    if (now.size() < 2 || now.size() > 4) throw wrong();
+    probe.now = {now[0], now[1]};
+    if (now.size() > 2) probe.angle = now[2] * std::numbers::pi / 180;
+    if (now.size() > 3) probe.radius = now[3];
+    if (!(probe.radius >= 1e-3)) throw wrong();
+    return probe;
+}
+
+std::array<int, 2> parse_size(const std::string& text) {
+    std::array<int, 2> size{};
+    const char* const end = text.data() + text.size();
+    const auto [cross, width_error] = std::from_chars(text.data(), end, size[0]);
+    if (width_error == std::errc() && cross != end && *cross == 'x') {
+        const auto [last, height_error] = std::from_chars(cross + 1, end, size[1]);
+        if (height_error == std::errc() && last == end && size[0] > 0 && size[1] > 0) return size;
+    }
+    throw UsageError(fmt::format("--size {}: expected WIDTHxHEIGHT in pixels, such as 640x480", text));
+}
+
+std::optional<Colour> parse_colour(const std::string& text) {
+    if (text == "none") return {};
+    if (text == "white") return Colour{255, 255, 255};
+    if (text == "black") return Colour{0, 0, 0};
+    std::string hex = text;
+    if (hex.size() == 4) hex = {hex[0], hex[1], hex[1], hex[2], hex[2], hex[3], hex[3]};
+    unsigned value = 0;
+    if (hex.size() == 7 && hex[0] == '#') {
+        const auto [end, error] = std::from_chars(hex.data() + 1, hex.data() + 7, value, 16);
+        if (error == std::errc() && end == hex.data() + 7)
+            return Colour{std::uint8_t(value >> 16), std::uint8_t(value >> 8), std::uint8_t(value)};
+    }
+    throw UsageError(fmt::format("--background {}: expected #rrggbb, white, black or none", text));
+}
+
+}  // namespace probewarp

@@ -1,0 +1,15 @@
+// The command line: reads the arguments and runs what they ask for.
+#pragma once
+
+#include <string>
+
+namespace probewarp {
+
+/// Runs the program. `open_window` is called for `probewarp [FILE]`, with an empty path for none.
+/// Returns the exit code: 0, 1 where something failed, 2 where the arguments are wrong.
+int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path));
+
+/// `text` as one line that a terminal can show: control characters become question marks.
+std::string one_line(std::string text);
+
+}  // namespace probewarp

@@ -1,0 +1,142 @@
+// `probewarp render`: a picture or a project in, the deformed picture, mesh or project out.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "io/file.h"
+#include "io/image_file.h"
+#include "io/obj.h"
+#include "io/probes_csv.h"
+#include "io/project.h"
+#include "render/context.h"
+#include "render/export.h"
+
+namespace probewarp {
+
+namespace {
+
+enum class Kind { image, mesh, project };
+
+struct OutputFormat {
+    Kind kind = Kind::image;
+    const ImageFormat* image = nullptr;  ///< of Kind::image
+};
+
+OutputFormat output_format(const RenderOptions& o) {
+    if (o.output == "-" && o.format.empty()) throw UsageError("-o -: expected --format with it");
+    std::string ending = std::filesystem::path(o.output).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) { return char(std::tolower(c)); });
+    if (o.format == "obj" || (o.format.empty() && ending == ".obj")) return {Kind::mesh};
+    if (o.format == "probewarp" || (o.format.empty() && ending == project_extension)) return {Kind::project};
+    const ImageFormat* format = o.format.empty() ? image_format_of(o.output) : find_image_format(o.format);
+    if (!format || !format->encode)
+        throw UsageError(fmt::format("{} cannot be written; expected png, jpeg, bmp, tga, obj or probewarp",
+                                     o.format.empty() ? o.output : "--format " + o.format));
+    return {Kind::image, format};
+}
+
+ExportSettings export_settings(const RenderOptions& o) {
+    ExportSettings settings;
+    settings.scale = o.scale;
+    if (!o.size.empty()) settings.size = parse_size(o.size);
+    settings.samples = o.samples;
+    settings.canvas = o.canvas == "fit" ? Canvas::fit : Canvas::image;
+    settings.background = parse_colour(o.background);
+    return settings;
+}
+
+void add_csv_probes(Document& document, const std::string& path) {
+    const auto bytes = read_file(path);
+    try {
+        const auto probes =
+            decode_probes_csv({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, document);
+        document.probes.insert(document.probes.end(), probes.begin(), probes.end());
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", path, error.what()));
+    }
+}
+
+Document document_of(const RenderOptions& o) {
+    Document document = read_document(o.input);
+    if (!o.image.empty()) replace_picture(document, std::make_shared<const Picture>(read_picture(o.image)));
+    if (!o.probes_csv.empty()) add_csv_probes(document, o.probes_csv);
+    for (const std::string& text : o.probes) document.probes.push_back(parse_probe(text, document));
+    if (o.mesh) document.cells = *o.mesh;
+    if (!o.weights.empty()) document.weights = o.weights;
+    if (!o.blend.empty()) document.blend = o.blend;
+    check_size(document);
+    return document;
+}
+
+/// Shows how far a render is, once it has taken a second and where somebody watches.
+class Progress {
+  public:
+    explicit Progress(bool quiet) : on_(!quiet && isatty(STDERR_FILENO) == 1) {}
+    ~Progress() {
+        if (shown_) fmt::print(stderr, "\r\x1b[K");
+    }
+    void show(double part) {
+        if (!on_ || std::chrono::steady_clock::now() - start_ < std::chrono::seconds(1)) return;
+        shown_ = true;
+        fmt::print(stderr, "\rrendering {:3.0f} %", part * 100);
+        std::fflush(stderr);
+    }
+
+  private:
+    bool on_, shown_ = false;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Image rendered(const Document& document, const Deformation& deformation, const ExportSettings& settings,
+               const RenderOptions& o) {
+    export_view(document, deformation, settings);  // refuses a size that is too large before anything is opened
+    Progress progress(o.quiet);
+    const auto context = open_context(o.backend);
+    Renderer renderer;
+    renderer.set_picture(document.picture->image, smaller_levels(document.picture->image));
+    renderer.set_mesh(deformation.mesh);
+    renderer.set_positions(deformation.now);
+    ExportJob job(renderer, document, deformation, settings);
+    while (!job.done()) {
+        job.step();
+        progress.show(job.progress());
+    }
+    return job.take();
+}
+
+void write_output(const std::string& path, std::span<const std::byte> bytes) {
+    if (path != "-") return write_file(path, bytes);
+    if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
+        throw Error("cannot write to standard output");
+}
+
+}  // namespace
+
+void render(const RenderOptions& o) {
+    const OutputFormat format = output_format(o);
+    const ExportSettings settings = export_settings(o);
+    const Document document = document_of(o);
+    std::error_code ignored;
+    if (format.kind != Kind::project && o.output != "-" && std::filesystem::equivalent(o.input, o.output, ignored))
+        throw UsageError(fmt::format("-o {}: this is the input itself; expected another file", o.output));
+    if (format.kind == Kind::project) return write_output(o.output, encode_project(document));
+
+    Deformation deformation;
+    update(deformation, document);
+    if (format.kind == Kind::mesh) {
+        const std::string text = encode_obj(document, deformation);
+        return write_output(o.output, std::as_bytes(std::span(text)));
+    }
+    const Image image = rendered(document, deformation, settings, o);
+    EncodeOptions encode;
+    encode.background = settings.background.value_or(encode.background);
+    write_output(o.output, format.image->encode(image, encode));
+}
+
+}  // namespace probewarp

@@ -1,0 +1,185 @@
+#include "editor/commands.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "editor/tools.h"
+
+namespace probewarp {
+
+namespace {
+
+std::string_view needs_picture(const Editor& e) { return has_picture(e) ? "" : "Open a picture first"; }
+std::string_view needs_probe(const Editor& e) {
+    return find_probe(e.document, e.selected) ? "" : "Choose a probe first";
+}
+std::string_view needs_unlocked(const Editor& e) {
+    const Probe* probe = find_probe(e.document, e.selected);
+    return !probe ? "Choose a probe first" : probe->locked ? "The probe is locked" : "";
+}
+std::string_view needs_pose(const Editor& e) {
+    const auto& probes = e.document.probes;
+    return std::all_of(probes.begin(), probes.end(), at_rest) ? "No probe has moved" : "";
+}
+std::string_view needs_undo(const Editor& e) { return e.history.at > 0 ? "" : "There is nothing to undo"; }
+std::string_view needs_redo(const Editor& e) {
+    return e.history.at + 1 < e.history.steps.size() ? "" : "There is nothing to redo";
+}
+
+template <Request R>
+void ask(Editor& editor) {
+    editor.requests.push_back(R);
+}
+
+void delete_probe(Editor& editor) {
+    const Probe* probe = selected_probe(editor);
+    const std::string label = "Delete " + probe->name;
+    std::erase_if(editor.document.probes, [id = probe->id](const Probe& p) { return p.id == id; });
+    editor.selected = 0;
+    editor.hover = {};
+    commit(editor, label);
+}
+
+void duplicate_probe(Editor& editor) {
+    const Probe original = *selected_probe(editor);
+    Probe copy = new_probe(editor.document, original.rest);
+    const double aside = original.radius / 2;
+    copy.rest = original.rest + glm::dvec2(aside, 0);
+    copy.now = original.now + glm::dvec2(aside, 0);
+    copy.angle = original.angle;
+    copy.radius = original.radius;
+    editor.document.probes.push_back(copy);
+    editor.selected = copy.id;
+    commit(editor, "Duplicate " + original.name);
+}
+
+void put_to_rest(Probe& probe) {
+    probe.now = probe.rest;
+    probe.angle = 0;
+}
+
+void reset_probe(Editor& editor) {
+    put_to_rest(*selected_probe(editor));
+    commit(editor, "Reset " + selected_probe(editor)->name);
+}
+
+void reset_pose(Editor& editor) {
+    for (Probe& probe : editor.document.probes)
+        if (!probe.locked) put_to_rest(probe);
+    commit(editor, "Reset pose");
+}
+
+void toggle_lock(Editor& editor) {
+    Probe& probe = *selected_probe(editor);
+    probe.locked = !probe.locked;
+    commit(editor, (probe.locked ? "Lock " : "Unlock ") + probe.name);
+}
+
+void show_whole(Editor& editor) { fit_view(editor); }
+void show_actual(Editor& editor) { zoom_at(editor.view, editor.canvas_size / 2.0, 1 / editor.view.zoom); }
+void zoom_in(Editor& editor) { zoom_at(editor.view, editor.canvas_size / 2.0, 1.5); }
+void zoom_out(Editor& editor) { zoom_at(editor.view, editor.canvas_size / 2.0, 1 / 1.5); }
+
+constexpr Command all[] = {
+    {"File", "New", {'N', true}, nullptr, &ask<Request::new_document>},
+    {"File", "Open…", {'O', true}, nullptr, &ask<Request::open>},
+    {"File", "Save", {'S', true}, &needs_picture, &ask<Request::save>, true},
+    {"File", "Save as…", {'S', true, true}, &needs_picture, &ask<Request::save_as>},
+    {"File", "Export…", {'E', true}, &needs_picture, &ask<Request::export_picture>, true},
+    {"File", "Import probes (CSV)…", {}, &needs_picture, &ask<Request::import_probes>},
+    {"File", "Replace picture…", {}, &needs_picture, &ask<Request::replace_picture>},
+    {"File", "Quit", {'Q', true}, nullptr, &ask<Request::quit>, true},
+    {"Edit", "Undo", {'Z', true}, &needs_undo, &undo_step},
+    {"Edit", "Redo", {'Z', true, true}, &needs_redo, &redo_step},
+    {"Edit", "Unselect", {}, &needs_probe, [](Editor& e) { e.selected = 0; }, true},
+    {"Probe", "Delete", {key_delete}, &needs_probe, &delete_probe},
+    {"Probe", "Duplicate", {'D', true}, &needs_probe, &duplicate_probe},
+    {"Probe", "Lock", {'L', true}, &needs_probe, &toggle_lock, false,
+     [](const Editor& e) { return find_probe(e.document, e.selected) && find_probe(e.document, e.selected)->locked; }},
+    {"Probe", "Put back to rest", {'R', true}, &needs_unlocked, &reset_probe, true},
+    {"Probe", "Reset the pose of all", {'R', true, true}, &needs_pose, &reset_pose},
+    {"View", "Fit", {'F'}, &needs_picture, &show_whole},
+    {"View", "100 %", {'1'}, &needs_picture, &show_actual},
+    {"View", "Zoom in", {'='}, &needs_picture, &zoom_in},
+    {"View", "Zoom out", {'-'}, &needs_picture, &zoom_out},
+    {"View", "Show probes", {'H'}, nullptr, [](Editor& e) { e.show_probes = !e.show_probes; }, true,
+     [](const Editor& e) { return e.show_probes; }},
+    {"View", "Show mesh", {'M'}, nullptr, [](Editor& e) { e.show_mesh = !e.show_mesh; }, false,
+     [](const Editor& e) { return e.show_mesh; }},
+    {"View", "Light theme", {}, nullptr, &ask<Request::switch_theme>, true},
+    {"Help", "About Probewarp", {}, nullptr, &ask<Request::about>},
+};
+
+/// Second keys of commands above.
+struct Alias {
+    Shortcut key;
+    std::string_view label;
+};
+constexpr Alias aliases[] = {{{'Y', true}, "Redo"}, {{key_backspace}, "Delete"}, {{'0'}, "Fit"}};
+
+void nudge(Editor& editor, glm::dvec2 way) {
+    Probe* probe = selected_probe(editor);
+    if (!probe || probe->locked) return;
+    probe->now += way;
+    commit(editor, "Nudge " + probe->name);
+}
+
+}  // namespace
+
+std::string to_text(const Shortcut& shortcut) {
+    if (shortcut.key == 0) return {};
+    std::string text = shortcut.ctrl ? "Ctrl+" : "";
+    if (shortcut.shift) text += "Shift+";
+    return text + (shortcut.key == key_delete ? "Del" : std::string(1, char(shortcut.key)));
+}
+
+std::span<const Command> commands() { return all; }
+
+const Command& find_command(std::string_view label) {
+    const auto found = std::find_if(std::begin(all), std::end(all), [&](const Command& c) { return c.label == label; });
+    assert(found != std::end(all));
+    return *found;
+}
+
+void run(Editor& editor, const Command& command) {
+    if (editor.gesture) return;  // a drag ends by itself or by Escape
+    const std::string_view why_not = command.why_not ? command.why_not(editor) : "";
+    if (why_not.empty())
+        command.run(editor);
+    else
+        editor.notice = std::string(why_not) + ".";
+}
+
+bool press_key(Editor& editor, const Shortcut& key) {
+    if (key == Shortcut{key_escape}) {
+        cancel(editor);
+        return true;
+    }
+    for (const Command& command : all)
+        if (command.shortcut.key != 0 && command.shortcut == key) {
+            run(editor, command);
+            return true;
+        }
+    for (const Alias& alias : aliases)
+        if (alias.key == key) {
+            run(editor, find_command(alias.label));
+            return true;
+        }
+    if (editor.gesture || key.ctrl) return false;
+    for (const Tool& tool : tools())
+        if (key == Shortcut{tool.key}) {
+            editor.tool = &tool;
+            return true;
+        }
+    const double step = key.shift ? 10 : 1;
+    switch (key.key) {
+        case key_left: nudge(editor, {-step, 0}); return true;
+        case key_right: nudge(editor, {step, 0}); return true;
+        case key_up: nudge(editor, {0, -step}); return true;
+        case key_down: nudge(editor, {0, step}); return true;
+        default: return false;
+    }
+}
+
+}  // namespace probewarp

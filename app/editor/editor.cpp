@@ -1,0 +1,128 @@
+#include "editor/editor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/tools.h"
+
+namespace probewarp {
+
+Editor::Editor() : tool(&tools()[0]) {}
+
+bool has_picture(const Editor& editor) { return editor.document.picture != nullptr; }
+
+Probe* selected_probe(Editor& editor) { return find_probe(editor.document, editor.selected); }
+
+void start(Editor& editor, Document document, std::filesystem::path path, bool saved) {
+    editor.gesture.reset();
+    editor.selected = 0;
+    editor.hover = {};
+    editor.history = new_history(document, saved);
+    editor.document = std::move(document);
+    editor.deformation = {};
+    editor.path = std::move(path);
+    editor.fit_wanted = true;
+}
+
+void refresh(Editor& editor) {
+    if (has_picture(editor)) update(editor.deformation, editor.document);
+}
+
+void commit(Editor& editor, std::string label) {
+    editor.gesture.reset();
+    commit(editor.history, editor.document, std::move(label));
+}
+
+void cancel(Editor& editor) {
+    if (!editor.gesture) {
+        editor.selected = 0;
+        return;
+    }
+    if (editor.gesture->kind == Gesture::Kind::pan) editor.view.corner = editor.gesture->start_corner;
+    editor.document = std::move(editor.gesture->before);
+    editor.gesture.reset();
+    if (!selected_probe(editor)) editor.selected = 0;
+}
+
+namespace {
+
+void show_present(Editor& editor) {
+    editor.gesture.reset();
+    editor.document = present(editor.history);
+    if (!selected_probe(editor)) editor.selected = 0;
+}
+
+}  // namespace
+
+void undo_step(Editor& editor) {
+    if (undo(editor.history)) show_present(editor);
+}
+
+void redo_step(Editor& editor) {
+    if (redo(editor.history)) show_present(editor);
+}
+
+void begin_field(Editor& editor) {
+    if (!editor.gesture) begin(editor, Gesture::Kind::field, {}, {});
+}
+
+void end_field(Editor& editor, std::string label) { commit(editor, std::move(label)); }
+
+int put_probe(Editor& editor, glm::dvec2 at) {
+    if (!has_picture(editor)) return 0;
+    refresh(editor);
+    const glm::dvec2 point = to_image(editor.view, at);
+    const auto pose = pose_at(editor.deformation, point);
+    if (!pose) return 0;
+    Probe probe = new_probe(editor.document, pose->rest);
+    probe.now = point;
+    probe.angle = pose->angle;
+    if (editor.document.probes.empty()) probe.now = probe.rest;  // nothing is deformed yet: exactly at rest
+    editor.document.probes.push_back(probe);
+    editor.selected = probe.id;
+    return probe.id;
+}
+
+glm::dvec2 knob_position(const Editor& editor, const Probe& probe) {
+    return to_canvas(editor.view, probe.now) +
+           stem_length * editor.scale * glm::dvec2(std::sin(probe.angle), -std::cos(probe.angle));
+}
+
+namespace {
+
+double distance(glm::dvec2 a, glm::dvec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+Part part_at(const Editor& editor, const Probe& probe, glm::dvec2 at) {
+    const double reach = (knob_radius + 4) * editor.scale;
+    if (distance(at, knob_position(editor, probe)) <= reach) return Part::knob;
+    if (distance(at, to_canvas(editor.view, probe.now)) <= (disc_radius + 2) * editor.scale) return Part::disc;
+    return Part::none;
+}
+
+}  // namespace
+
+Hit hit_test(const Editor& editor, glm::dvec2 at) {
+    if (!editor.show_probes) return {};
+    const auto& probes = editor.document.probes;
+    const Probe* chosen = find_probe(editor.document, editor.selected);
+    if (chosen && chosen->visible)
+        if (const Part part = part_at(editor, *chosen, at); part != Part::none) return {part, chosen->id};
+    for (auto probe = probes.rbegin(); probe != probes.rend(); ++probe)
+        if (const Part part = part_at(editor, *probe, at); probe->visible && part != Part::none)
+            return {part, probe->id};
+    if (chosen && chosen->visible) {
+        const double off = distance(at, to_canvas(editor.view, chosen->now)) - chosen->radius * editor.view.zoom;
+        if (std::abs(off) <= 4 * editor.scale) return {Part::reach, chosen->id};
+    }
+    return {};
+}
+
+void fit_view(Editor& editor) {
+    if (!has_picture(editor) || editor.canvas_size.x <= 0) return;
+    const Image& image = editor.document.picture->image;
+    editor.view = fitted({image.width, image.height}, editor.canvas_size, 40 * editor.scale,
+                         std::max(1.0, editor.scale));
+    editor.fit_wanted = false;
+}
+
+}  // namespace probewarp

@@ -1,0 +1,128 @@
+// The editor: what a person is doing to a document, without a window. It takes pointer and key events as plain
+// structs and knows neither the toolkit nor the file system; what it needs from them it asks for by a Request.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "editor/view.h"
+#include "model/document.h"
+#include "model/history.h"
+
+namespace probewarp {
+
+enum class Button { left, middle, right };
+
+struct PointerEvent {
+    glm::dvec2 at{0};  ///< canvas pixels
+    Button button = Button::left;
+    bool shift = false, ctrl = false, alt = false, space = false;
+};
+
+/// Sizes of a probe's glyph at scale 1, pixels (look.md).
+inline constexpr double disc_radius = 15, stem_length = 34, knob_radius = 6;
+
+enum class Part { none, disc, knob, reach };
+
+struct Hit {
+    Part part = Part::none;
+    int probe = 0;  ///< id; 0 for none
+    friend bool operator==(const Hit&, const Hit&) = default;
+};
+
+/// What lasts from press to release: the document before it, and what is dragged.
+struct Gesture {
+    enum class Kind { pan, move, turn, reach, field } kind = Kind::pan;
+    Document before;
+    int probe = 0;
+    PointerEvent pressed;       ///< what began it
+    glm::dvec2 last{0};         ///< canvas pixels: where the pointer was at the last event
+    glm::dvec2 start_corner{0}; ///< pan: the view's corner then
+    double raw_angle = 0;       ///< turn: radians, unwrapped, before snapping
+    std::string label;          ///< of the step it becomes
+    bool moved = false;         ///< further than a click may tremble
+};
+
+/// What the editor asks of its surroundings.
+enum class Request {
+    new_document,
+    open,
+    save,
+    save_as,
+    export_picture,
+    import_probes,
+    replace_picture,
+    switch_theme,
+    about,
+    quit,
+};
+
+struct Tool;
+
+struct Editor {
+    History history;
+    Document document;  ///< what is shown: the present step, or what a gesture makes of it
+    Deformation deformation;
+    std::filesystem::path path;  ///< of the project; empty before it was saved
+
+    CanvasView view;
+    glm::dvec2 canvas_size{0};
+    double scale = 1;  ///< screen pixels per pixel of the design
+    bool fit_wanted = true;
+
+    const Tool* tool = nullptr;
+    int selected = 0;  ///< probe id; 0 for none
+    Hit hover;
+    std::optional<glm::dvec2> pointer;  ///< canvas pixels; empty while it is elsewhere
+    std::optional<Gesture> gesture;
+    bool show_probes = true, show_mesh = false;
+
+    std::vector<Request> requests;  ///< taken and emptied by the window
+    std::string notice;             ///< a sentence to show once; taken and emptied by the window
+
+    Editor();
+};
+
+bool has_picture(const Editor& editor);
+Probe* selected_probe(Editor& editor);
+
+/// Begins with another document: opened from `path` (a project) or from nothing.
+void start(Editor& editor, Document document, std::filesystem::path path, bool saved);
+
+/// Brings the deformation up to date with the document. Called before drawing.
+void refresh(Editor& editor);
+
+/// Makes `document` a step of the history, unless nothing changed. Ends a gesture.
+void commit(Editor& editor, std::string label);
+/// Takes back what the gesture did. Without one, unselects.
+void cancel(Editor& editor);
+
+void undo_step(Editor& editor);
+void redo_step(Editor& editor);
+
+/// Pointer events, in canvas pixels.
+void press(Editor& editor, const PointerEvent& event);
+void move(Editor& editor, const PointerEvent& event);
+void release(Editor& editor, const PointerEvent& event);
+void double_click(Editor& editor, const PointerEvent& event);
+void scroll(Editor& editor, const PointerEvent& event, double steps);
+
+/// A field of a panel is being edited: changes to `document` until end_field are one step.
+void begin_field(Editor& editor);
+void end_field(Editor& editor, std::string label);
+
+/// Puts a probe on the picture under the pointer, with the picture's own pose there, so that nothing jumps.
+/// Not committed. Returns its id, or 0 beside the picture.
+int put_probe(Editor& editor, glm::dvec2 at);
+
+/// What is under the pointer, the chosen probe first, then the topmost.
+Hit hit_test(const Editor& editor, glm::dvec2 at);
+/// Where the knob of a probe is, canvas pixels.
+glm::dvec2 knob_position(const Editor& editor, const Probe& probe);
+
+void fit_view(Editor& editor);
+
+}  // namespace probewarp

@@ -1,0 +1,215 @@
+#include "gui/actions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gui/app.h"
+#include "io/file.h"
+#include "io/image_file.h"
+#include "io/obj.h"
+#include "io/probes_csv.h"
+#include "io/project.h"
+
+namespace probewarp {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> picture_endings() {
+    std::vector<std::string> endings;
+    for (const ImageFormat& format : image_formats())
+        endings.insert(endings.end(), format.extensions.begin(), format.extensions.end());
+    return endings;
+}
+
+/// Where a dialog begins: beside the project, or at home.
+fs::path usual_folder(const App& app) {
+    if (!app.editor.path.empty()) return app.editor.path.parent_path();
+    const char* home = std::getenv("HOME");
+    return home ? home : "/";
+}
+
+void open_now(App& app, const fs::path& path) {
+    start_job(app, fmt::format("Opening {}", path.filename().string()), true, [path]() -> std::function<void(App&)> {
+        auto document = std::make_shared<Document>(read_document(path));
+        auto levels = std::make_shared<std::vector<Image>>(smaller_levels(document->picture->image));
+        std::error_code ignored;
+        const fs::path whole = fs::absolute(path, ignored);
+        return [document, levels, whole](App& a) {
+            // The picture is handed over first: where the driver cannot hold it, the open document stays.
+            try {
+                a.renderer->set_picture(document->picture->image, *levels);
+            } catch (const Error& error) {
+                say(a, Tone::error, fmt::format("{}: {}", whole.string(), error.what()));
+                a.uploaded.reset();
+                return;
+            }
+            a.uploaded = document->picture;
+            const bool project = whole.extension() == project_extension;
+            start(a.editor, std::move(*document), project ? whole : fs::path(), true);
+        };
+    });
+}
+
+void save_to(App& app, fs::path path, std::function<void(App&)> then) {
+    const Document document = app.editor.document;
+    const std::size_t step = app.editor.history.at;
+    start_job(app, fmt::format("Saving {}", path.filename().string()), true,
+              [document, path, step, then = std::move(then)]() -> std::function<void(App&)> {
+                  write_file(path, encode_project(document));
+                  return [path, step, then](App& a) {
+                      a.editor.path = path;
+                      a.editor.history.saved = step;
+                      say(a, Tone::done, fmt::format("Saved {}.", path.filename().string()));
+                      if (then) then(a);
+                  };
+              });
+}
+
+void save_as(App& app, std::function<void(App&)> then = {}) {
+    fs::path proposed = app.editor.path;
+    if (proposed.empty())
+        proposed = usual_folder(app) / fs::path(app.editor.document.picture->name).replace_extension(project_extension);
+    ask_for_file(app, "Save the project", "Save", true, {project_extension}, proposed,
+                 [then = std::move(then)](App& a, const fs::path& path) { save_to(a, path, then); });
+}
+
+void save(App& app, std::function<void(App&)> then = {}) {
+    if (app.editor.path.empty())
+        save_as(app, std::move(then));
+    else
+        save_to(app, app.editor.path, std::move(then));
+}
+
+void open_dialog(App& app) {
+    std::vector<std::string> endings = picture_endings();
+    endings.emplace_back(project_extension);
+    ask_for_file(app, "Open a picture or a project", "Open", false, endings, usual_folder(app),
+                 [](App& a, const fs::path& path) { open_now(a, path); });
+}
+
+void new_document(App& app) {
+    start(app.editor, {}, {}, true);
+    app.uploaded.reset();
+}
+
+void replace_picture_dialog(App& app) {
+    ask_for_file(app, "Put another picture under the probes", "Replace", false, picture_endings(), usual_folder(app),
+                 [](App& app_now, const fs::path& path) {
+                     start_job(app_now, fmt::format("Opening {}", path.filename().string()), true,
+                               [path]() -> std::function<void(App&)> {
+                                   auto picture = std::make_shared<const Picture>(read_picture(path));
+                                   return [picture](App& a) {
+                                       replace_picture(a.editor.document, picture);
+                                       commit(a.editor, "Replace picture");
+                                       a.editor.fit_wanted = true;
+                                   };
+                               });
+                 });
+}
+
+void import_probes_dialog(App& app) {
+    ask_for_file(app, "Import the probes of a CSV file", "Import", false, {".csv", ".txt"}, usual_folder(app),
+                 [](App& a, const fs::path& path) {
+                     try {
+                         const auto bytes = read_file(path);
+                         Document document = a.editor.document;
+                         const auto probes = decode_probes_csv(
+                             {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, document);
+                         document.probes.insert(document.probes.end(), probes.begin(), probes.end());
+                         check_size(document);
+                         a.editor.document = std::move(document);
+                         commit(a.editor, "Import probes");
+                         say(a, Tone::done, fmt::format("Imported {} probes.", probes.size()));
+                     } catch (const Error& error) {
+                         say(a, Tone::error, fmt::format("{}: {}", path.string(), error.what()));
+                     }
+                 });
+}
+
+void export_dialog(App& app) {
+    ExportDialog& dialog = app.export_dialog;
+    dialog.open = true;
+    dialog.overwrite_asked = false;
+    if (dialog.path.empty()) {
+        const fs::path name = fs::path(document_name(app)).stem();
+        dialog.path = (usual_folder(app) / (name.string() + "-deformed.png")).string();
+    }
+}
+
+void switch_theme(App& app) {
+    app.theme = app.theme.is_light ? dark_theme() : light_theme();
+    apply_theme(app.theme, app.scale);
+}
+
+}  // namespace
+
+std::string document_name(const App& app) {
+    if (!app.editor.path.empty()) return app.editor.path.filename().string();
+    return has_picture(app.editor) ? app.editor.document.picture->name : "";
+}
+
+void after_saving(App& app, const char* what, std::function<void(App&)> then) {
+    if (!has_picture(app.editor) || is_saved(app.editor.history)) return then(app);
+    app.questions.push_back({"Unsaved changes",
+                             fmt::format("{} has changes that are not saved. Save them before {}?", document_name(app), what),
+                             {{"Save", [then](App& a) { save(a, then); }},
+                              {"Throw away", then},
+                              {"Cancel", {}}}});
+    app.wake();
+}
+
+void open_path(App& app, const fs::path& path) {
+    after_saving(app, "opening another", [path](App& a) { open_now(a, path); });
+}
+
+void export_to(App& app, const fs::path& path) {
+    const ImageFormat* format = image_format_of(path);
+    if (path.extension() == ".obj") {
+        const std::string text = encode_obj(app.editor.document, app.editor.deformation);
+        start_job(app, fmt::format("Exporting {}", path.filename().string()), true, [path, text]() -> std::function<void(App&)> {
+            write_file(path, std::as_bytes(std::span(text)));
+            return [path](App& a) { say(a, Tone::done, fmt::format("Exported {}.", path.string())); };
+        });
+        return;
+    }
+    const ExportSettings& settings = app.export_dialog.settings;
+    EncodeOptions encode;
+    encode.background = settings.background.value_or(encode.background);
+    encode.quality = app.export_dialog.quality;
+    try {
+        app.jobs.exporting =
+            std::make_unique<ExportJob>(*app.renderer, app.editor.document, app.editor.deformation, settings);
+    } catch (const Error& error) {
+        return say(app, Tone::error, error.what());
+    }
+    app.jobs.export_title = fmt::format("Exporting {}", path.filename().string());
+    app.jobs.exported = [path, format, encode](App& a, Image image) {
+        start_job(a, fmt::format("Writing {}", path.filename().string()), true,
+                  [path, format, encode, image = std::make_shared<Image>(std::move(image))]() -> std::function<void(App&)> {
+                      write_file(path, format->encode(*image, encode));
+                      return [path](App& later) { say(later, Tone::done, fmt::format("Exported {}.", path.string())); };
+                  });
+    };
+    app.wake();
+}
+
+void handle_requests(App& app) {
+    for (const Request request : std::exchange(app.editor.requests, {})) switch (request) {
+            case Request::new_document: after_saving(app, "closing it", &new_document); break;
+            case Request::open: after_saving(app, "opening another", &open_dialog); break;
+            case Request::save: save(app); break;
+            case Request::save_as: save_as(app); break;
+            case Request::export_picture: export_dialog(app); break;
+            case Request::import_probes: import_probes_dialog(app); break;
+            case Request::replace_picture: replace_picture_dialog(app); break;
+            case Request::switch_theme: switch_theme(app); break;
+            case Request::about: app.about_open = true; break;
+            case Request::quit: after_saving(app, "leaving", [](App& a) { a.quit = true; }); break;
+        }
+    if (!app.editor.notice.empty()) say(app, Tone::hint, std::exchange(app.editor.notice, {}));
+}
+
+}  // namespace probewarp

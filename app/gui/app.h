@@ -1,0 +1,88 @@
+// Everything the window holds, handed to each of its parts.
+#pragma once
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "editor/editor.h"
+#include "gui/file_dialog.h"
+#include "gui/fonts.h"
+#include "gui/jobs.h"
+#include "gui/messages.h"
+#include "gui/samples.h"
+#include "gui/theme.h"
+#include "render/export.h"
+#include "render/renderer.h"
+
+namespace probewarp {
+
+/// What the canvas texture was last drawn from: it is drawn anew only when something differs.
+struct Shown {
+    unsigned long mesh_version = 0, version = 0;
+    CanvasView view;
+    glm::ivec2 size{0};
+    bool mesh = false, light = false;
+    GLuint texture = 0;
+};
+
+/// The dialog that asks how to export.
+struct ExportDialog {
+    bool open = false;
+    ExportSettings settings;
+    bool transparent = true;
+    float background[3] = {1, 1, 1};
+    int quality = 95;
+    std::string path;
+    bool overwrite_asked = false;  ///< the path exists and the person was told so
+};
+
+/// A question with up to three answers.
+struct Question {
+    std::string title, text;
+    struct Answer {
+        std::string label;
+        std::function<void(App&)> then;  ///< may be empty
+    };
+    std::vector<Answer> answers;  ///< the first is the blue one, the last is what Escape means
+};
+
+struct App {
+    GLFWwindow* window = nullptr;
+    Editor editor;
+    std::unique_ptr<Renderer> renderer;
+    std::string renderer_label;
+    Theme theme = dark_theme();
+    Fonts fonts;
+    float scale = 1;
+    Shown shown;
+    PicturePtr uploaded;         ///< the picture that the renderer holds
+    std::vector<Image> levels;   ///< mipmaps that came with an opened picture, until they are uploaded
+    double deform_milliseconds = 0;
+
+    Jobs jobs;
+    std::vector<Message> messages;
+    std::vector<std::pair<ImVec2, ImVec2>> overlays;  ///< what lies over the canvas in this frame
+    FileDialog file_dialog;
+    ExportDialog export_dialog;
+    std::vector<Question> questions;  ///< asked one after the other
+    bool about_open = false;
+    Samples samples;
+    bool modal = false;  ///< a dialog is open: the canvas and the shortcuts rest
+    bool probes_open = true, probe_open = true, deformation_open = true;
+    int renaming = 0;  ///< probe id
+    std::string new_name;
+    std::string field_label;  ///< of the panel field being edited
+    bool quit = false;
+    int frames_wanted = 3;  ///< ImGui settles within a few frames of an event
+
+    /// Sizes of the design in pixels of this window.
+    float px(double design) const { return float(design) * scale; }
+    void wake() { frames_wanted = 3; }
+};
+
+}  // namespace probewarp

@@ -1,0 +1,188 @@
+#include "gui/canvas.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "editor/tools.h"
+#include "gui/app.h"
+#include "gui/widgets.h"
+
+namespace probewarp {
+
+namespace {
+
+/// Brings the renderer up to date with the document. Where a driver refuses the picture, that is said once.
+void update_renderer(App& app) {
+    Editor& editor = app.editor;
+    if (app.uploaded != editor.document.picture) {
+        app.uploaded = editor.document.picture;
+        const Image& image = editor.document.picture->image;
+        app.renderer->set_picture(image, smaller_levels(image));
+    }
+    using Clock = std::chrono::steady_clock;
+    const auto before = Clock::now();
+    const unsigned long version = editor.deformation.version;
+    refresh(editor);
+    if (editor.deformation.version != version)
+        app.deform_milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - before).count();
+    if (app.shown.mesh_version != editor.deformation.mesh_version) app.renderer->set_mesh(editor.deformation.mesh);
+    if (app.shown.version != editor.deformation.version) app.renderer->set_positions(editor.deformation.now);
+}
+
+bool same(const CanvasView& a, const CanvasView& b) { return a.corner == b.corner && a.zoom == b.zoom; }
+
+void update_texture(App& app, glm::ivec2 size) {
+    if (app.jobs.exporting) return;  // the renderer is busy; the canvas keeps its last picture
+    update_renderer(app);
+    const Editor& editor = app.editor;
+    Shown& shown = app.shown;
+    if (shown.version == editor.deformation.version && shown.mesh_version == editor.deformation.mesh_version &&
+        same(shown.view, editor.view) && shown.size == size && shown.mesh == editor.show_mesh &&
+        shown.light == app.theme.is_light)
+        return;
+    View view;
+    view.scale = glm::dvec2(editor.view.zoom);
+    view.origin = -editor.view.corner / editor.view.zoom;
+    view.width = size.x;
+    view.height = size.y;
+    app.renderer->draw(view, 1);
+    shown.texture = app.renderer->display(view, display_colours(app.theme), double(app.px(12)), editor.show_mesh);
+    shown.mesh_version = editor.deformation.mesh_version;
+    shown.version = editor.deformation.version;
+    shown.view = editor.view;
+    shown.size = size;
+    shown.mesh = editor.show_mesh;
+    shown.light = app.theme.is_light;
+}
+
+/// Draws probes at a place of the window, in the look of look.md.
+struct ProbePainter {
+    App& app;
+    ImDrawList* list;
+    ImVec2 corner;  ///< of the canvas, window pixels
+
+    ImVec2 at(glm::dvec2 p) const { return {corner.x + float(p.x), corner.y + float(p.y)}; }
+
+    void reach(const Probe& probe, ImVec2 middle) const {
+        const double radius = probe.radius * app.editor.view.zoom;
+        const int dashes = std::clamp(int(radius * 2 * std::numbers::pi / double(app.px(10))), 8, 400);
+        const ImU32 colour = to_u32(probe.colour, 0.75f);
+        for (int i = 0; i < dashes; ++i) {
+            const float from = float(2 * std::numbers::pi * i / dashes), to = from + float(std::numbers::pi / dashes);
+            list->PathArcTo(middle, float(radius), from, to, 6);
+            list->PathStroke(colour, 0, app.px(1.5));
+        }
+    }
+
+    void draw(const Probe& probe) const {
+        const Editor& editor = app.editor;
+        const bool chosen = probe.id == editor.selected;
+        const bool lit = editor.hover.probe == probe.id || (editor.gesture && editor.gesture->probe == probe.id);
+        const ImU32 dark = IM_COL32(0x0d, 0x0f, 0x12, 255);
+        const ImU32 plain = to_u32(probe.colour);
+        const ImU32 colour = lit ? mixed(plain, IM_COL32_WHITE, 0.25f) : plain;
+        const ImVec2 middle = at(to_canvas(editor.view, probe.now)), knob = at(knob_position(editor, probe));
+        const float radius = app.px(disc_radius);
+        if (chosen) {
+            reach(probe, middle);
+            list->AddCircle(middle, radius + app.px(4), IM_COL32_WHITE, 48, app.px(2));
+        }
+        list->AddLine(middle, knob, dark, app.px(5));
+        list->AddLine(middle, knob, colour, app.px(2.5));
+        list->AddCircleFilled(knob, app.px(knob_radius + 1.2), dark, 24);
+        list->AddCircleFilled(knob, app.px(knob_radius), colour, 24);
+        list->AddCircleFilled(middle, radius, faded(colour, lit ? 0.45f : 0.28f), 48);
+        list->AddCircle(middle, radius, dark, 48, app.px(4.5));
+        list->AddCircle(middle, radius, colour, 48, app.px(2.5));
+        list->AddCircleFilled(middle, app.px(3), IM_COL32_WHITE, 16);
+        if (probe.locked) {
+            const ImVec2 badge{middle.x + radius * 0.8f, middle.y + radius * 0.8f};
+            list->AddCircleFilled(badge, app.px(8), dark, 24);
+            ImFont* font = app.fonts.icons_small;
+            const float size = app.px(12);
+            const ImVec2 extent = font->CalcTextSizeA(size, FLT_MAX, 0, icon::lock);
+            list->AddText(font, size, {badge.x - extent.x / 2, badge.y - extent.y / 2}, IM_COL32_WHITE, icon::lock);
+        }
+    }
+};
+
+void draw_label(const App& app, ImDrawList* list, ImVec2 at, const std::string& text, float opacity, float rounding) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const ImVec2 pad{app.px(12), app.px(5)};
+    list->AddRectFilled(at, {at.x + size.x + 2 * pad.x, at.y + size.y + 2 * pad.y}, IM_COL32(0x0d, 0x0f, 0x12, int(255 * opacity)), rounding);
+    list->AddText({at.x + pad.x, at.y + pad.y}, IM_COL32(0xdf, 0xe3, 0xea, 255), text.c_str());
+}
+
+std::string signed_number(double value) { return fmt::format("{}{:.0f}", std::round(value) < 0 ? "−" : "+", std::abs(value)); }
+
+void draw_gesture_label(const App& app, const ProbePainter& painter) {
+    const Editor& editor = app.editor;
+    if (!editor.gesture || !editor.gesture->probe) return;
+    const Probe* probe = find_probe(editor.document, editor.gesture->probe);
+    if (!probe) return;
+    const glm::dvec2 way = probe->now - probe->rest;
+    const std::string text = editor.gesture->kind == Gesture::Kind::reach
+                                 ? fmt::format("reach {:.0f} px", probe->radius)
+                                 : fmt::format("{}, {} px   {:.0f}°", signed_number(way.x), signed_number(way.y),
+                                               probe->angle * 180 / std::numbers::pi);
+    const ImVec2 middle = painter.at(to_canvas(editor.view, probe->now));
+    draw_label(app, painter.list, {std::round(middle.x + app.px(32)), std::round(middle.y - app.px(74))}, text, 0.88f, app.px(6));
+}
+
+void draw_hint(const App& app, ImDrawList* list, float left, float bottom, float width) {
+    const std::string text(app.editor.tool->hint);
+    const float text_width = ImGui::CalcTextSize(text.c_str()).x + app.px(24);
+    if (text_width > width || app.editor.gesture) return;
+    draw_label(app, list, {std::round(left + (width - text_width) / 2), bottom - app.px(34)}, text, 0.6f, app.px(13));
+}
+
+void choose_cursor(const Editor& editor) {
+    if (editor.gesture && editor.gesture->kind == Gesture::Kind::pan) return ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+    if (editor.hover.part == Part::disc) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+    if (editor.hover.part == Part::knob || editor.hover.part == Part::reach) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+}
+
+}  // namespace
+
+void draw_canvas(App& app, float left, float top, float width, float height) {
+    Editor& editor = app.editor;
+    editor.canvas_size = {width, height};
+    editor.scale = double(app.scale);
+    ImGui::SetNextWindowPos({left, top});
+    ImGui::SetNextWindowSize({width, height});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, app.theme.canvas);
+    ImGui::Begin("##canvas", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                          ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+    ImGui::PopStyleColor();
+    ImGui::PopStyleVar(3);
+    if (!has_picture(editor)) {
+        draw_empty_state(app, left, top, width, height);
+        ImGui::End();
+        return;
+    }
+    if (editor.fit_wanted) fit_view(editor);
+    update_texture(app, {int(width), int(height)});
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    if (app.shown.texture != 0)
+        list->AddImage(reinterpret_cast<ImTextureID>(std::uintptr_t(app.shown.texture)), {left, top}, {left + width, top + height});
+    const ProbePainter painter{app, list, {left, top}};
+    list->PushClipRect({left, top}, {left + width, top + height}, true);
+    if (editor.show_probes) {
+        for (const Probe& probe : editor.document.probes)
+            if (probe.visible && probe.id != editor.selected) painter.draw(probe);
+        if (const Probe* chosen = find_probe(editor.document, editor.selected); chosen && chosen->visible) painter.draw(*chosen);
+        draw_gesture_label(app, painter);
+    }
+    draw_hint(app, list, left, top + height, width);
+    list->PopClipRect();
+    if (editor.pointer && !app.modal) choose_cursor(editor);
+    ImGui::End();
+}
+
+}  // namespace probewarp

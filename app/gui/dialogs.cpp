@@ -1,0 +1,204 @@
+#include "gui/dialogs.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "gui/actions.h"
+#include "gui/app.h"
+#include "gui/widgets.h"
+#include "io/image_file.h"
+
+namespace probewarp {
+
+namespace {
+
+constexpr ImGuiWindowFlags dialog_flags = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                          ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
+
+bool begin_dialog(const App& app, const char* title, float width) {
+    if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({app.px(width), 0});
+    return ImGui::BeginPopupModal(title, nullptr, dialog_flags);
+}
+
+bool escape_pressed() { return ImGui::IsKeyPressed(GLFW_KEY_ESCAPE) && !ImGui::IsAnyItemActive(); }
+
+/// Puts the cursor where `count` buttons of `width` end at the right edge.
+void align_buttons(const App& app, int count, float width) {
+    const float all = float(count) * app.px(width) + float(count - 1) * ImGui::GetStyle().ItemSpacing.x;
+    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - all);
+}
+
+/// What keeps the export from beginning, or nothing.
+std::string export_trouble(const App& app) {
+    const ExportDialog& dialog = app.export_dialog;
+    const std::filesystem::path path = dialog.path;
+    const ImageFormat* format = image_format_of(path);
+    if (path.extension() != ".obj" && (!format || !format->encode))
+        return "The name must end with .png, .jpg, .bmp, .tga or .obj.";
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(path.parent_path(), ignored)) return "There is no such folder.";
+    try {
+        export_view(app.editor.document, app.editor.deformation, dialog.settings);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+void begin_export(App& app) {
+    ExportDialog& dialog = app.export_dialog;
+    std::error_code ignored;
+    if (std::filesystem::exists(dialog.path, ignored) && !dialog.overwrite_asked) {
+        dialog.overwrite_asked = true;
+        return;
+    }
+    dialog.open = false;
+    ImGui::CloseCurrentPopup();
+    export_to(app, dialog.path);
+}
+
+void draw_export_settings(App& app) {
+    ExportDialog& dialog = app.export_dialog;
+    const float width = ImGui::GetContentRegionAvail().x - app.px(92);
+    double percent = dialog.settings.scale * 100;
+    row_label(app, "Scale", 92);
+    if (number_field(app, "##scale", percent, "%", width, 0.5, 0.1, 10000)) dialog.settings.scale = percent / 100;
+
+    const int choices[] = {1, 2, 3, 4, 8};
+    row_label(app, "Samples", 92);
+    ImGui::SetNextItemWidth(width);
+    const auto text = [](int n) { return n == 1 ? std::string("1: exact pixels") : fmt::format("{0} × {0}: smooth edges", n); };
+    if (ImGui::BeginCombo("##samples", text(dialog.settings.samples).c_str())) {
+        for (const int n : choices)
+            if (ImGui::Selectable(text(n).c_str(), n == dialog.settings.samples)) dialog.settings.samples = n;
+        ImGui::EndCombo();
+    }
+    row_label(app, "Canvas", 92);
+    ImGui::SetNextItemWidth(width);
+    int canvas = int(dialog.settings.canvas);
+    if (ImGui::Combo("##canvas", &canvas, "The picture's rectangle\0All of the deformed picture\0\0"))
+        dialog.settings.canvas = Canvas(canvas);
+
+    row_label(app, "Background", 92);
+    ImGui::Checkbox("Transparent", &dialog.transparent);
+    if (!dialog.transparent) {
+        ImGui::SameLine();
+        ImGui::ColorEdit3("##background", dialog.background, ImGuiColorEditFlags_NoInputs);
+    }
+    dialog.settings.background.reset();
+    const auto byte = [](float v) { return std::uint8_t(std::clamp(v, 0.0f, 1.0f) * 255 + 0.5f); };
+    if (!dialog.transparent)
+        dialog.settings.background = Colour{byte(dialog.background[0]), byte(dialog.background[1]), byte(dialog.background[2])};
+
+    const ImageFormat* format = image_format_of(dialog.path);
+    if (format && format->name == "jpeg") {
+        row_label(app, "Quality", 92);
+        ImGui::SetNextItemWidth(width);
+        ImGui::SliderInt("##quality", &dialog.quality, 1, 100);
+        row_label(app, "", 92);
+        ImGui::TextDisabled(dialog.transparent ? "JPEG has no transparency: white is put behind." : "");
+    }
+}
+
+}  // namespace
+
+void draw_questions(App& app) {
+    if (app.questions.empty()) return;
+    const Question question = app.questions.front();
+    if (!begin_dialog(app, question.title.c_str(), 440)) return;
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(question.text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::Dummy({0, app.px(8)});
+    std::size_t chosen = question.answers.size();
+    align_buttons(app, int(question.answers.size()), 108);
+    for (std::size_t i = question.answers.size(); i-- > 0;) {
+        const ImVec2 size{app.px(108), app.px(28)};
+        const char* label = question.answers[i].label.c_str();
+        if (i == 0 ? accent_button(app, label, size) : ImGui::Button(label, size)) chosen = i;
+        if (i > 0) ImGui::SameLine();
+    }
+    if (escape_pressed()) chosen = question.answers.size() - 1;
+    if (ImGui::IsKeyPressed(GLFW_KEY_ENTER, false)) chosen = 0;
+    if (chosen < question.answers.size()) {
+        ImGui::CloseCurrentPopup();
+        app.questions.erase(app.questions.begin());
+        if (question.answers[chosen].then) question.answers[chosen].then(app);
+        app.wake();
+    }
+    ImGui::EndPopup();
+}
+
+void draw_export_dialog(App& app) {
+    ExportDialog& dialog = app.export_dialog;
+    if (!dialog.open || app.file_dialog.open) return;
+    const bool appearing = !ImGui::IsPopupOpen("Export");
+    if (!begin_dialog(app, "Export", 520)) return;
+    row_label(app, "File", 92);
+    if (appearing) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - app.px(96));
+    const bool entered = ImGui::InputText("##path", &dialog.path, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    if (ImGui::IsItemEdited()) dialog.overwrite_asked = false;
+    ImGui::SameLine();
+    if (ImGui::Button("Browse…", {app.px(88), 0})) {
+        ImGui::CloseCurrentPopup();
+        ask_for_file(app, "Export to", "Choose", true, {".png", ".jpg", ".jpeg", ".bmp", ".tga", ".obj"}, dialog.path,
+                     [](App& a, const std::filesystem::path& path) {
+                         a.export_dialog.path = path.string();
+                         std::error_code ignored;  // where it exists, the file dialog has asked
+                         a.export_dialog.overwrite_asked = std::filesystem::exists(path, ignored);
+                     });
+    }
+    if (std::filesystem::path(dialog.path).extension() != ".obj") draw_export_settings(app);
+
+    const std::string trouble = export_trouble(app);
+    ImGui::Dummy({0, app.px(2)});
+    ImGui::PushStyleColor(ImGuiCol_Text, app.theme.muted);
+    ImGui::PushTextWrapPos(0);
+    if (!trouble.empty())
+        ImGui::TextUnformatted(trouble.c_str());
+    else if (dialog.overwrite_asked)
+        ImGui::Text("This file exists and will be replaced. Press Export once more.");
+    else {
+        const View view = export_view(app.editor.document, app.editor.deformation, dialog.settings);
+        ImGui::Text("%d × %d pixels, %d bits a channel", view.width, view.height, app.editor.document.picture->image.bits());
+    }
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    ImGui::Dummy({0, app.px(2)});
+    align_buttons(app, 2, 108);
+    const bool cancelled = ImGui::Button("Cancel", {app.px(108), app.px(28)}) || escape_pressed();
+    ImGui::SameLine();
+    if ((accent_button(app, "Export", {app.px(108), app.px(28)}, nullptr, trouble.empty()) || entered) && trouble.empty())
+        begin_export(app);
+    if (cancelled) {
+        dialog.open = false;
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
+void draw_about(App& app) {
+    if (!app.about_open || !begin_dialog(app, "About Probewarp", 460)) return;
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted("Deforms pictures with probes, by dual number linear blending of anti-commutative dual "
+                           "complex numbers (Matsuda, Kaji, Ochiai, arXiv 1601.01754).");
+    ImGui::Text("Rendered by %s. MIT licence.", app.renderer_label.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::Dummy({0, app.px(4)});
+    align_buttons(app, 1, 108);
+    if (accent_button(app, "Close", {app.px(108), app.px(28)}) || escape_pressed()) {
+        app.about_open = false;
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
+}  // namespace probewarp

@@ -1,0 +1,26 @@
+// The window's fonts: Inter for text, Material Design for icons, rasterised for the present scale.
+#pragma once
+
+#include <imgui.h>
+
+namespace probewarp {
+
+struct Fonts {
+    ImFont *text = nullptr, *strong = nullptr, *small = nullptr, *large = nullptr;
+    ImFont *icons = nullptr, *icons_small = nullptr;
+};
+
+/// Fills ImGui's atlas. Where a font file is missing the next best one is used. The text outlives the call.
+Fonts load_fonts(float scale);
+
+/// Icons of the Material Design font (Debian's fonts-materialdesignicons-webfont), UTF-8.
+namespace icon {
+inline constexpr const char *undo = "\uF54C", *redo = "\uF44F", *export_ = "\uF207", *select = "\uF1B4",
+                            *add = "\uF651", *zoom = "\uF349", *eye = "\uF208", *eye_off = "\uF209",
+                            *grid = "\uF2C1", *down = "\uF140", *right = "\uF142", *plus = "\uF415",
+                            *lock = "\uF33E", *lock_open = "\uF33F", *close = "\uF156", *copy = "\uF18F",
+                            *folder = "\uF24B", *image = "\uF2E9", *home = "\uF2DC", *up = "\uF05D",
+                            *alert = "\uF028", *info = "\uF2FC", *done = "\uF5E0", *palette = "\uF3D8";
+}
+
+}  // namespace probewarp

@@ -1,0 +1,104 @@
+#include "gui/jobs.h"
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+
+#include "gui/app.h"
+#include "gui/widgets.h"
+
+namespace probewarp {
+
+void start_job(App& app, std::string title, bool blocks, std::function<std::function<void(App&)>()> work) {
+    auto job = std::make_unique<Job>();
+    job->title = std::move(title);
+    job->blocks = blocks;
+    job->thread = std::jthread([&job = *job, work = std::move(work)] {
+        try {
+            job.finish = work();
+        } catch (const std::bad_alloc&) {
+            job.error = "There is not enough memory.";
+        } catch (const std::exception& error) {
+            job.error = error.what();
+        }
+        job.done = true;
+        glfwPostEmptyEvent();
+    });
+    app.jobs.running.push_back(std::move(job));
+    app.wake();
+}
+
+namespace {
+
+/// Renders for a part of a frame's time, so that the progress and Cancel stay alive.
+void advance_export(App& app) {
+    using Clock = std::chrono::steady_clock;
+    const auto until = Clock::now() + std::chrono::milliseconds(30);
+    try {
+        do app.jobs.exporting->step();
+        while (!app.jobs.exporting->done() && Clock::now() < until);
+    } catch (const Error& error) {
+        app.jobs.exporting.reset();
+        say(app, Tone::error, error.what());
+        return;
+    }
+    app.wake();
+    if (!app.jobs.exporting->done()) return;
+    Image image = app.jobs.exporting->take();
+    app.jobs.exporting.reset();
+    app.jobs.exported(app, std::move(image));
+}
+
+}  // namespace
+
+void advance_jobs(App& app) {
+    if (app.jobs.exporting) advance_export(app);
+    for (std::size_t i = 0; i < app.jobs.running.size();) {
+        if (!app.jobs.running[i]->done) {
+            ++i;
+            continue;
+        }
+        const std::unique_ptr<Job> job = std::move(app.jobs.running[i]);
+        app.jobs.running.erase(app.jobs.running.begin() + std::ptrdiff_t(i));
+        app.wake();
+        if (job->given_up) continue;
+        if (!job->error.empty())
+            say(app, Tone::error, job->error);
+        else if (job->finish)
+            job->finish(app);
+    }
+}
+
+bool is_busy(const App& app) {
+    return app.jobs.exporting ||
+           std::any_of(app.jobs.running.begin(), app.jobs.running.end(),
+                       [](const auto& job) { return job->blocks && !job->given_up; });
+}
+
+void draw_progress(App& app) {
+    if (!is_busy(app)) return;
+    const auto job = std::find_if(app.jobs.running.begin(), app.jobs.running.end(),
+                                  [](const auto& j) { return j->blocks && !j->given_up; });
+    const bool exports = app.jobs.exporting != nullptr;
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({app.px(360), 0});
+    ImGui::Begin("##progress", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::TextUnformatted(exports ? app.jobs.export_title.c_str() : (*job)->title.c_str());
+    // A thread's progress is not known: its bar goes to and fro.
+    const float to_and_fro = float(0.5 + 0.5 * std::sin(ImGui::GetTime() * 3));
+    ImGui::ProgressBar(exports ? float(app.jobs.exporting->progress()) : to_and_fro, {-1, app.px(6)}, "");
+    if (ImGui::Button("Cancel", {app.px(96), app.px(28)})) {
+        if (exports)
+            app.jobs.exporting.reset();
+        else
+            (*job)->given_up = true;
+        say(app, Tone::hint, "Cancelled.");
+    }
+    ImGui::End();
+    app.wake();
+}
+
+}  // namespace probewarp

@@ -1,0 +1,48 @@
+// Work that would freeze the window: opening, saving and exporting run beside it, and can be given up.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "model/document.h"
+#include "render/export.h"
+
+namespace probewarp {
+
+struct App;
+
+/// One piece of work on a thread of its own. `finish` runs on the window's thread, unless the work was given up.
+struct Job {
+    std::string title;                ///< "Opening gingerbread.png"
+    bool blocks = true;               ///< the window waits for it behind a dialog
+    std::atomic<bool> done = false;   ///< the thread has ended
+    std::atomic<bool> given_up = false;
+    std::string error;                ///< written by the thread before done
+    std::function<void(App&)> finish; ///< written by the thread before done
+    std::jthread thread;
+};
+
+struct Jobs {
+    std::vector<std::unique_ptr<Job>> running;
+    std::unique_ptr<ExportJob> exporting;  ///< rendered tile by tile on the window's thread
+    std::function<void(App&, Image)> exported;
+    std::string export_title;
+};
+
+/// Runs `work` on a thread; what it returns is called on the window's thread afterwards. An Error it throws is said.
+void start_job(App& app, std::string title, bool blocks, std::function<std::function<void(App&)>()> work);
+
+/// Does the window's share of the work that is under way: a tile, what a thread has finished.
+void advance_jobs(App& app);
+
+/// The dialog of the job that blocks, with its progress and Cancel.
+void draw_progress(App& app);
+
+bool is_busy(const App& app);
+
+}  // namespace probewarp

@@ -1,0 +1,225 @@
+// The panel at the right: the list of probes, the chosen probe's numbers, the deformation.
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "editor/commands.h"
+#include "gui/app.h"
+#include "gui/panels.h"
+#include "gui/widgets.h"
+
+namespace probewarp {
+
+namespace {
+
+constexpr double farthest = 1e6;  // of a typed coordinate, image pixels
+
+/// Call after a field of the panel: what it does until it is left is one step of the history.
+void is_step(App& app, const std::string& label) {
+    if (!ImGui::IsItemActive() || app.editor.gesture) return;
+    begin_field(app.editor);
+    app.field_label = label;
+}
+
+void edit_at_once(App& app, const std::string& label) { commit(app.editor, label); }
+
+void draw_name(App& app, Probe& probe, ImVec2 at, bool chosen) {
+    if (app.renaming != probe.id) {
+        const float y = std::round(at.y + (app.px(look::field) - ImGui::GetFontSize()) / 2);
+        ImGui::GetWindowDrawList()->AddText({at.x + app.px(42), y}, chosen ? app.theme.text : mixed(app.theme.text, app.theme.muted, 0.25f), probe.name.c_str());
+        return;
+    }
+    ImGui::SetCursorScreenPos({at.x + app.px(36), at.y});
+    ImGui::SetNextItemWidth(app.px(170));
+    const bool first = !ImGui::IsAnyItemActive();
+    if (first) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputText("##rename", &app.new_name, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    if (!entered && !ImGui::IsItemDeactivated()) return;
+    app.renaming = 0;
+    if (app.new_name.empty() || app.new_name.size() > 200 || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE)) return;
+    probe.name = app.new_name;
+    edit_at_once(app, "Rename probe");
+}
+
+void draw_probe_row(App& app, Probe& probe) {
+    Editor& editor = app.editor;
+    ImGui::PushID(probe.id);
+    const bool chosen = probe.id == editor.selected;
+    const ImVec2 cursor = ImGui::GetCursorScreenPos();
+    const ImVec2 at{cursor.x - app.px(8), cursor.y};
+    const float width = ImGui::GetContentRegionAvail().x + app.px(16), height = app.px(look::field);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    ImGui::SetCursorScreenPos(at);
+    if (ImGui::InvisibleButton("##row", {width - app.px(66), height})) editor.selected = probe.id;
+    const bool hovered = ImGui::IsItemHovered();
+    if (hovered && ImGui::IsMouseDoubleClicked(0)) {
+        app.renaming = probe.id;
+        app.new_name = probe.name;
+    }
+    if (chosen || hovered) list->AddRectFilled(at, {at.x + width, at.y + height}, chosen ? app.theme.raised : faded(app.theme.raised, 0.5f), app.px(5));
+    if (chosen) list->AddRectFilled(at, {at.x + app.px(3), at.y + height}, app.theme.accent, app.px(1.5));
+    list->AddCircleFilled({at.x + app.px(18), at.y + height / 2}, app.px(6), to_u32(probe.colour, probe.visible ? 1 : 0.4f), 24);
+    draw_name(app, probe, at, chosen);
+    ImGui::SetCursorScreenPos({at.x + width - app.px(62), at.y});
+    if (icon_button(app, "##lock", probe.locked ? icon::lock : icon::lock_open, probe.locked ? "Unlock" : "Lock: cannot be moved by hand")) {
+        probe.locked = !probe.locked;
+        edit_at_once(app, probe.locked ? "Lock" : "Unlock");
+    }
+    ImGui::SetCursorScreenPos({at.x + width - app.px(32), at.y});
+    if (icon_button(app, "##eye", probe.visible ? icon::eye : icon::eye_off, probe.visible ? "Hide (it still deforms)" : "Show")) {
+        probe.visible = !probe.visible;
+        edit_at_once(app, probe.visible ? "Show" : "Hide");
+    }
+    ImGui::SetCursorScreenPos({cursor.x, cursor.y + app.px(look::row)});
+    ImGui::PopID();
+}
+
+void draw_probes(App& app) {
+    bool add = false;
+    if (section(app, "Probes", app.probes_open, &add)) {
+        if (app.editor.document.probes.empty()) {
+            ImGui::PushTextWrapPos(0);
+            ImGui::TextDisabled("None yet. Double-click the picture to put one there.");
+            ImGui::PopTextWrapPos();
+        }
+        // A row may end a gesture or take a step, never add or remove a probe.
+        for (Probe& probe : app.editor.document.probes) draw_probe_row(app, probe);
+    }
+    if (!add) return;
+    const Image& image = app.editor.document.picture->image;
+    const glm::dvec2 middle = to_canvas(app.editor.view, centre(image));
+    if (put_probe(app.editor, middle) != 0) commit(app.editor, "Add probe");
+}
+
+void point_fields(App& app, const char* label, glm::dvec2& point, const Probe& probe) {
+    row_label(app, label, 52);
+    const float width = (ImGui::GetContentRegionAvail().x - app.px(8)) / 2;
+    ImGui::PushID(label);
+    number_field(app, "##x", point.x, "x", width, 0.5, -farthest, farthest);
+    is_step(app, "Move " + probe.name);
+    ImGui::SameLine(0, app.px(8));
+    number_field(app, "##y", point.y, "y", width, 0.5, -farthest, farthest);
+    is_step(app, "Move " + probe.name);
+    ImGui::PopID();
+}
+
+void draw_chosen_probe(App& app) {
+    Probe* probe = selected_probe(app.editor);
+    if (!probe) return;
+    ImGui::Dummy({0, app.px(4)});
+    ImGui::Separator();
+    ImGui::Dummy({0, app.px(4)});
+    if (!section(app, (probe->name + "###chosen").c_str(), app.probe_open)) return;
+    ImGui::BeginDisabled(probe->locked);
+    point_fields(app, "Now", probe->now, *probe);
+    point_fields(app, "Rest", probe->rest, *probe);
+    row_label(app, "Turn", 52);
+    double degrees = probe->angle * 180 / std::numbers::pi;
+    const int turns = int(std::trunc(degrees / 360));
+    const std::string unit = turns == 0 ? "°" : fmt::format("{} × + {:.1f} °", turns, degrees - 360.0 * turns);
+    if (number_field(app, "##turn", degrees, unit.c_str(), ImGui::GetContentRegionAvail().x, 0.5, -1e6, 1e6))
+        probe->angle = degrees * std::numbers::pi / 180;
+    is_step(app, "Turn " + probe->name);
+    row_label(app, "Reach", 52);
+    number_field(app, "##reach", probe->radius, "px", ImGui::GetContentRegionAvail().x, 0.5, 1, farthest);
+    is_step(app, "Reach of " + probe->name);
+    ImGui::EndDisabled();
+    if (probe->locked && ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax()))
+        ImGui::SetTooltip("The probe is locked");
+}
+
+/// One row of a table of methods; the names' labels are shown, the names are kept.
+template <class Rows>
+void method_combo(App& app, const char* label, std::string& name, const Rows& rows, const char* step) {
+    row_label(app, label, 68);
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+    const auto chosen = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.name == name; });
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, app.theme.raised);
+    ImGui::PushID(label);
+    if (ImGui::BeginCombo("##method", std::string(chosen->label).c_str())) {
+        for (const auto& row : rows)
+            if (ImGui::Selectable(std::string(row.label).c_str(), row.name == name)) {
+                name = std::string(row.name);
+                edit_at_once(app, step);
+            }
+        ImGui::EndCombo();
+    }
+    ImGui::PopID();
+    ImGui::PopStyleColor();
+}
+
+/// A slim slider with a round grip, quadratic so that coarse meshes have room.
+void mesh_slider(App& app) {
+    Document& document = app.editor.document;
+    row_label(app, "Mesh", 68);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x - app.px(48), height = app.px(look::field);
+    ImGui::InvisibleButton("##mesh", {width, height});
+    constexpr double least = 2, most = 400;
+    if (ImGui::IsItemActive()) {
+        is_step(app, "Mesh density");
+        const double part = std::clamp(double((ImGui::GetIO().MousePos.x - at.x) / width), 0.0, 1.0);
+        document.cells = int(std::lround(least + (most - least) * part * part));
+        try {
+            check_size(document);
+        } catch (const Error& error) {
+            document.cells = app.editor.deformation.source.cells;
+            app.editor.notice = error.what();
+        }
+    }
+    const float part = float(std::sqrt(std::clamp((document.cells - least) / (most - least), 0.0, 1.0)));
+    const float middle = at.y + height / 2, grip = at.x + part * width;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled({at.x, middle - app.px(2)}, {at.x + width, middle + app.px(2)}, app.theme.line, app.px(2));
+    list->AddRectFilled({at.x, middle - app.px(2)}, {grip, middle + app.px(2)}, app.theme.accent, app.px(2));
+    list->AddCircleFilled({grip, middle}, app.px(7), IM_COL32_WHITE, 24);
+    list->AddCircle({grip, middle}, app.px(7), app.theme.line, 24);
+    tooltip("Cells along the picture's longer side");
+    ImGui::SameLine(0, app.px(8));
+    int cells = document.cells;
+    ImGui::SetNextItemWidth(app.px(40));
+    if (ImGui::InputInt("##cells", &cells, 0, 0)) {
+        document.cells = std::clamp(cells, min_cells, int(most));
+    }
+    is_step(app, "Mesh density");
+}
+
+void draw_deformation(App& app) {
+    ImGui::Dummy({0, app.px(4)});
+    ImGui::Separator();
+    ImGui::Dummy({0, app.px(4)});
+    if (!section(app, "Deformation", app.deformation_open)) return;
+    method_combo(app, "Blend", app.editor.document.blend, blend_methods(), "Blend");
+    method_combo(app, "Weights", app.editor.document.weights, weight_schemes(), "Weights");
+    mesh_slider(app);
+}
+
+}  // namespace
+
+void draw_panel(App& app) {
+    if (!has_picture(app.editor)) return;
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float top = app.px(look::menu), width = app.px(look::panel);
+    const float height = display.y - top - app.px(look::status);
+    ImGui::SetNextWindowPos({display.x - width, top});
+    ImGui::SetNextWindowSize({width, height});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+    ImGui::Begin("##panel", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+    ImGui::PopStyleVar(2);
+    draw_probes(app);
+    draw_chosen_probe(app);
+    draw_deformation(app);
+    // Leaving a field makes what it did a step, however it was left.
+    if (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field && !ImGui::IsAnyItemActive())
+        end_field(app.editor, app.field_label);
+    ImGui::GetWindowDrawList()->AddLine({display.x - width, top}, {display.x - width, top + height}, app.theme.line);
+    ImGui::End();
+}
+
+}  // namespace probewarp

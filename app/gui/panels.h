@@ -1,0 +1,13 @@
+// What stands around the canvas: menu bar, tool strip, panel, status bar.
+#pragma once
+
+namespace probewarp {
+
+struct App;
+
+void draw_menu_bar(App& app);
+void draw_tool_strip(App& app);
+void draw_panel(App& app);
+void draw_status_bar(App& app);
+
+}  // namespace probewarp

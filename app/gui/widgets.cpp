@@ -1,0 +1,103 @@
+#include "gui/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace probewarp {
+
+void draw_icon(ImFont* font, ImVec2 middle, ImU32 colour, const char* symbol) {
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, symbol);
+    ImGui::GetWindowDrawList()->AddText(font, font->FontSize,
+                                        {std::round(middle.x - size.x / 2), std::round(middle.y - size.y / 2)}, colour,
+                                        symbol);
+}
+
+void tooltip(const char* text) {
+    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || !*text) return;
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {10, 6});
+    ImGui::SetTooltip("%s", text);
+    ImGui::PopStyleVar();
+}
+
+bool icon_button(App& app, const char* id, const char* symbol, const char* tip, bool on, const std::string& why_not) {
+    const float side = app.px(26);
+    const bool clicked = ImGui::InvisibleButton(id, {side, side}) && why_not.empty();
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    const bool hovered = ImGui::IsItemHovered() && why_not.empty();
+    if (hovered) ImGui::GetWindowDrawList()->AddRectFilled(from, to, app.theme.line, app.px(5));
+    const ImU32 colour = !why_not.empty() ? faded(app.theme.muted, 0.45f) : on ? app.theme.accent : hovered ? app.theme.text : app.theme.muted;
+    draw_icon(app.fonts.icons_small, {(from.x + to.x) / 2, (from.y + to.y) / 2}, colour, symbol);
+    tooltip(why_not.empty() ? tip : why_not.c_str());
+    return clicked;
+}
+
+bool accent_button(App& app, const char* label, ImVec2 size, const char* symbol, bool enabled) {
+    ImGui::PushID(label);
+    const bool clicked = ImGui::InvisibleButton("##accent", size) && enabled;
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    const bool lit = ImGui::IsItemHovered() && enabled;
+    ImU32 fill = enabled ? app.theme.accent : app.theme.raised;
+    if (lit) fill = mixed(fill, IM_COL32_WHITE, ImGui::IsItemActive() ? 0.05f : 0.15f);
+    const ImU32 ink = enabled ? app.theme.on_accent : app.theme.muted;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(from, to, fill, app.px(5));
+    if (ImGui::IsItemFocused() && ImGui::GetIO().NavVisible) list->AddRect(from, to, app.theme.text, app.px(5), 0, app.px(2));
+    const ImVec2 text = app.fonts.strong->CalcTextSizeA(app.fonts.strong->FontSize, FLT_MAX, 0, label);
+    const float icon_room = symbol ? app.px(20) : 0;
+    const float left = from.x + (size.x - text.x - icon_room) / 2;
+    const float middle = (from.y + to.y) / 2;
+    if (symbol) draw_icon(app.fonts.icons_small, {left + app.px(7), middle}, ink, symbol);
+    list->AddText(app.fonts.strong, app.fonts.strong->FontSize,
+                  {std::round(left + icon_room), std::round(middle - text.y / 2)}, ink, label);
+    ImGui::PopID();
+    return clicked;
+}
+
+bool section(App& app, const char* title, bool& open, bool* add) {
+    ImGui::PushID(title);
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, height = app.px(24);
+    if (ImGui::InvisibleButton("##fold", {width - (add ? app.px(30) : 0), height})) open = !open;
+    const ImU32 chevron = ImGui::IsItemHovered() ? app.theme.text : app.theme.muted;
+    draw_icon(app.fonts.icons_small, {from.x + app.px(4), from.y + height / 2}, chevron, open ? icon::down : icon::right);
+    ImFont* font = app.fonts.strong;
+    ImGui::GetWindowDrawList()->AddText(font, font->FontSize,
+                                        {from.x + app.px(18), std::round(from.y + (height - font->FontSize) / 2)},
+                                        app.theme.text, title);
+    if (add) {
+        ImGui::SetCursorScreenPos({from.x + width - app.px(22), from.y - app.px(1)});
+        *add = icon_button(app, "##add", icon::plus, "Add a probe in the middle of the picture");
+    }
+    ImGui::PopID();
+    return open;
+}
+
+void row_label(App& app, const char* text, float width) {
+    const ImVec2 at = ImGui::GetCursorPos();
+    ImGui::SetCursorPos({at.x, at.y + (app.px(look::field) - ImGui::GetTextLineHeight()) / 2});
+    ImGui::PushStyleColor(ImGuiCol_Text, app.theme.muted);
+    ImGui::TextUnformatted(text);
+    ImGui::PopStyleColor();
+    ImGui::SetCursorPos({at.x + app.px(width), at.y});
+}
+
+bool number_field(App& app, const char* id, double& value, const char* unit, float width, double step, double least,
+                  double most, const char* format) {
+    double edited = value;
+    ImGui::SetNextItemWidth(width);
+    ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, std::max(1.0f, std::floor(app.px(1))));
+    const bool changed = ImGui::DragScalar(id, ImGuiDataType_Double, &edited, float(step), nullptr, nullptr, format);
+    ImGui::PopStyleVar();
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    if (ImGui::IsItemActive() && ImGui::IsMouseDragging(0)) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    const float unit_width = app.fonts.small->CalcTextSizeA(app.fonts.small->FontSize, FLT_MAX, 0, unit).x;
+    ImGui::GetWindowDrawList()->AddText(app.fonts.small, app.fonts.small->FontSize,
+                                        {to.x - unit_width - app.px(8),
+                                         std::round((from.y + to.y - app.fonts.small->FontSize) / 2)},
+                                        app.theme.muted, unit);
+    if (!changed || !std::isfinite(edited)) return false;
+    value = std::clamp(edited, least, most);
+    return true;
+}
+
+}  // namespace probewarp

@@ -1,0 +1,35 @@
+// The window's own widgets, in the look of look.md: what ImGui has no word for.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+
+#include "gui/app.h"
+
+namespace probewarp {
+
+/// Draws an icon (or any text of `font`) about its middle.
+void draw_icon(ImFont* font, ImVec2 middle, ImU32 colour, const char* symbol);
+
+/// A square button without a frame. A `why_not` dims it and is its tooltip.
+bool icon_button(App& app, const char* id, const char* symbol, const char* tooltip, bool on = false,
+                 const std::string& why_not = {});
+
+/// The program's blue button.
+bool accent_button(App& app, const char* label, ImVec2 size, const char* symbol = nullptr, bool enabled = true);
+
+/// A foldable heading; returns whether it is open. `*add` becomes true where its plus was clicked.
+bool section(App& app, const char* title, bool& open, bool* add = nullptr);
+
+/// A label at the left of a row; the widget follows on the same line.
+void row_label(App& app, const char* text, float width);
+
+/// A number that can be dragged or typed, with its unit inside at the right. Returns whether it changed; never gives
+/// a value that is not finite or outside [least, most].
+bool number_field(App& app, const char* id, double& value, const char* unit, float width, double step, double least,
+                  double most, const char* format = "%.1f");
+
+void tooltip(const char* text);
+
+}  // namespace probewarp

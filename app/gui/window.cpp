@@ -1,0 +1,315 @@
+#include "gui/window.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "editor/commands.h"
+#include "gui/actions.h"
+#include "gui/app.h"
+#include "gui/canvas.h"
+#include "gui/dialogs.h"
+#include "gui/panels.h"
+#include "render/context.h"
+
+namespace probewarp {
+
+namespace {
+
+App& app_of(GLFWwindow* window) { return *static_cast<App*>(glfwGetWindowUserPointer(window)); }
+
+ImVec2 canvas_corner(const App& app) { return {app.px(look::tools), app.px(look::menu)}; }
+
+/// The pointer in canvas pixels, with the keys that are held.
+PointerEvent pointer_event(const App& app, Button button = Button::left) {
+    double x = 0, y = 0;
+    glfwGetCursorPos(app.window, &x, &y);
+    const auto held = [&app](int left, int right) {
+        return glfwGetKey(app.window, left) == GLFW_PRESS || glfwGetKey(app.window, right) == GLFW_PRESS;
+    };
+    PointerEvent event;
+    event.at = {x - double(canvas_corner(app).x), y - double(canvas_corner(app).y)};
+    event.button = button;
+    event.shift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+    event.ctrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    event.alt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+    event.space = held(GLFW_KEY_SPACE, GLFW_KEY_SPACE);
+    return event;
+}
+
+/// Whether a press there is the canvas's: inside it, with nothing above it.
+bool on_canvas(const App& app, glm::dvec2 at) {
+    if (app.modal || at.x < 0 || at.y < 0 || at.x >= app.editor.canvas_size.x || at.y >= app.editor.canvas_size.y) return false;
+    const ImVec2 p{float(at.x) + canvas_corner(app).x, float(at.y) + canvas_corner(app).y};
+    return std::none_of(app.overlays.begin(), app.overlays.end(), [p](const auto& box) {
+        return p.x >= box.first.x && p.y >= box.first.y && p.x < box.second.x && p.y < box.second.y;
+    });
+}
+
+void on_move(GLFWwindow* window, double, double) {
+    App& app = app_of(window);
+    app.wake();
+    const PointerEvent event = pointer_event(app);
+    if (app.editor.gesture || on_canvas(app, event.at))
+        move(app.editor, event);
+    else {
+        app.editor.pointer.reset();
+        app.editor.hover = {};
+    }
+}
+
+void on_button(GLFWwindow* window, int which, int action, int) {
+    static double last_press = -1;
+    static glm::dvec2 last_place{0};
+    App& app = app_of(window);
+    app.wake();
+    if (which > GLFW_MOUSE_BUTTON_MIDDLE) return;
+    const Button button = which == GLFW_MOUSE_BUTTON_LEFT ? Button::left : which == GLFW_MOUSE_BUTTON_MIDDLE ? Button::middle : Button::right;
+    const PointerEvent event = pointer_event(app, button);
+    if (action == GLFW_RELEASE) return release(app.editor, event);
+    if (!on_canvas(app, event.at) || ImGui::IsAnyItemActive()) return;
+    const glm::dvec2 way = event.at - last_place;
+    const double now = glfwGetTime();
+    const bool twice = button == Button::left && now - last_press < 0.4 && std::hypot(way.x, way.y) < app.px(5);
+    last_press = button == Button::left && !twice ? now : -1;
+    last_place = event.at;
+    if (twice)
+        double_click(app.editor, event);
+    else
+        press(app.editor, event);
+}
+
+void on_scroll(GLFWwindow* window, double, double steps) {
+    App& app = app_of(window);
+    app.wake();
+    const PointerEvent event = pointer_event(app);
+    if (on_canvas(app, event.at)) scroll(app.editor, event, steps);
+}
+
+int editor_key(int key) {
+    switch (key) {
+        case GLFW_KEY_ESCAPE: return key_escape;
+        case GLFW_KEY_DELETE: return key_delete;
+        case GLFW_KEY_BACKSPACE: return key_backspace;
+        case GLFW_KEY_LEFT: return key_left;
+        case GLFW_KEY_RIGHT: return key_right;
+        case GLFW_KEY_UP: return key_up;
+        case GLFW_KEY_DOWN: return key_down;
+        case GLFW_KEY_KP_ADD: return '=';
+        case GLFW_KEY_KP_SUBTRACT: return '-';
+        default: return key > 0 && key < 127 ? key : 0;
+    }
+}
+
+/// The key as the keyboard's layout labels it, so that Ctrl+Z is where the Z is.
+int layout_key(int key, int scancode) {
+    const char* name = key >= GLFW_KEY_A && key <= GLFW_KEY_Z ? glfwGetKeyName(key, scancode) : nullptr;
+    if (name && name[0] >= 'a' && name[0] <= 'z' && name[1] == '\0') return name[0] - 'a' + 'A';
+    return key;
+}
+
+void on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
+    App& app = app_of(window);
+    app.wake();
+    if (action == GLFW_RELEASE || app.modal || (mods & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return;
+    if (ImGui::GetIO().WantTextInput || (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field)) return;
+    const Shortcut shortcut{editor_key(layout_key(key, scancode)), (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0};
+    if (shortcut.key != 0) press_key(app.editor, shortcut);
+}
+
+void on_focus(GLFWwindow* window, int focused) {
+    App& app = app_of(window);
+    app.wake();
+    if (!focused && app.editor.gesture) cancel(app.editor);
+}
+
+void on_close(GLFWwindow* window) {
+    glfwSetWindowShouldClose(window, GLFW_FALSE);
+    App& app = app_of(window);
+    app.wake();
+    if (!app.modal) app.editor.requests.push_back(Request::quit);
+}
+
+void on_drop(GLFWwindow* window, int count, const char** paths) {
+    App& app = app_of(window);
+    app.wake();
+    if (count > 0 && !app.modal) open_path(app, paths[0]);
+}
+
+void on_damage(GLFWwindow* window) { app_of(window).wake(); }
+void on_size(GLFWwindow* window, int, int) { app_of(window).wake(); }
+
+/// PROBEWARP_UI_SCALE wins over what the display says.
+float wanted_scale(GLFWwindow* window) {
+    if (const char* text = std::getenv("PROBEWARP_UI_SCALE"))
+        if (const float value = std::strtof(text, nullptr); value >= 0.5f && value <= 4) return value;
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(window, &x, &y);
+    return std::clamp(x, 0.5f, 4.0f);
+}
+
+void rebuild_fonts(App& app) {
+    app.fonts = load_fonts(app.scale);
+    ImGui::GetIO().FontDefault = app.fonts.text;
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+    apply_theme(app.theme, app.scale);
+}
+
+void on_content_scale(GLFWwindow* window, float, float) {
+    App& app = app_of(window);
+    app.scale = wanted_scale(window);
+    app.fonts = {};  // rasterised anew before the next frame
+    app.wake();
+}
+
+/// GLFW, from its beginning to its end.
+struct Glfw {
+    Glfw() {
+        glfwSetErrorCallback([](int, const char*) {});
+        if (!glfwInit()) {
+            const char* why = nullptr;
+            glfwGetError(&why);
+            throw Error(fmt::format("cannot open a window: {}; probewarp render works without a display", why ? why : "no display"));
+        }
+    }
+    ~Glfw() { glfwTerminate(); }
+    Glfw(const Glfw&) = delete;
+    Glfw& operator=(const Glfw&) = delete;
+};
+
+GLFWwindow* open_window() {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    GLFWwindow* window = glfwCreateWindow(1280, 800, "Probewarp", nullptr, nullptr);
+    if (!window) {
+        const char* why = nullptr;
+        glfwGetError(&why);
+        throw Error(fmt::format("cannot open a window with OpenGL 3.3: {}", why ? why : "unknown reason"));
+    }
+    glfwMakeContextCurrent(window);
+    glfwSwapInterval(1);
+    return window;
+}
+
+void set_callbacks(GLFWwindow* window) {
+    glfwSetCursorPosCallback(window, &on_move);
+    glfwSetMouseButtonCallback(window, &on_button);
+    glfwSetScrollCallback(window, &on_scroll);
+    glfwSetKeyCallback(window, &on_key);
+    glfwSetWindowFocusCallback(window, &on_focus);
+    glfwSetWindowCloseCallback(window, &on_close);
+    glfwSetDropCallback(window, &on_drop);
+    glfwSetWindowRefreshCallback(window, &on_damage);
+    glfwSetFramebufferSizeCallback(window, &on_size);
+    glfwSetWindowContentScaleCallback(window, &on_content_scale);
+}
+
+/// ImGui with its two backends; chains the callbacks that are set already.
+struct Toolkit {
+    explicit Toolkit(GLFWwindow* window) {
+        ImGui::CreateContext();
+        ImGui::GetIO().IniFilename = nullptr;
+        ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+        ImGui_ImplGlfw_InitForOpenGL(window, true);
+        ImGui_ImplOpenGL3_Init("#version 330 core");
+    }
+    ~Toolkit() {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+    }
+    Toolkit(const Toolkit&) = delete;
+    Toolkit& operator=(const Toolkit&) = delete;
+};
+
+void set_title(App& app) {
+    static std::string shown;
+    const std::string name = document_name(app);
+    const bool dirty = has_picture(app.editor) && !is_saved(app.editor.history);
+    const std::string title = name.empty() ? "Probewarp" : fmt::format("{}{} – Probewarp", dirty ? "● " : "", name);
+    if (title != shown) glfwSetWindowTitle(app.window, title.c_str());
+    shown = title;
+}
+
+void draw_frame(App& app) {
+    if (!app.fonts.text) rebuild_fonts(app);
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    app.overlays.clear();
+    const ImVec2 display = ImGui::GetIO().DisplaySize, corner = canvas_corner(app);
+    const float panel = has_picture(app.editor) ? app.px(look::panel) : 0;
+    draw_canvas(app, corner.x, corner.y, std::max(1.0f, display.x - corner.x - panel),
+                std::max(1.0f, display.y - corner.y - app.px(look::status)));
+    draw_menu_bar(app);
+    draw_tool_strip(app);
+    draw_panel(app);
+    draw_status_bar(app);
+    draw_file_dialog(app);
+    draw_export_dialog(app);
+    draw_questions(app);
+    draw_about(app);
+    draw_progress(app);
+    draw_messages(app);
+    app.modal = is_busy(app) || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel) ||
+                app.file_dialog.open || app.export_dialog.open || app.about_open || !app.questions.empty();
+    ImGui::Render();
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(app.window, &width, &height);
+    clear_window(width, height, display_colours(app.theme).canvas);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    glfwSwapBuffers(app.window);
+}
+
+/// Sleeps until there is something to do: idle, the program uses no processor time.
+void wait_for_events(App& app) {
+    if (app.frames_wanted > 0) return glfwPollEvents();
+    const double message = next_message_change(app);
+    const double caret = ImGui::GetIO().WantTextInput ? 0.3 : -1;  // a text field's caret blinks
+    const double wait = message < 0 ? caret : caret < 0 ? message : std::min(message, caret);
+    if (wait < 0)
+        glfwWaitEvents();
+    else
+        glfwWaitEventsTimeout(std::max(wait, 0.005));
+    app.wake();
+}
+
+void run(App& app) {
+    while (!app.quit) {
+        wait_for_events(app);
+        advance_jobs(app);
+        handle_requests(app);
+        set_title(app);
+        draw_frame(app);
+        --app.frames_wanted;
+    }
+}
+
+}  // namespace
+
+int run_window(const std::string& path) {
+    const Glfw glfw;
+    GLFWwindow* window = open_window();
+    load_gl(&glfwGetProcAddress);
+    App app;
+    app.window = window;
+    app.scale = wanted_scale(window);
+    glfwSetWindowUserPointer(window, &app);
+    app.renderer = std::make_unique<Renderer>();
+    app.renderer_label = renderer_name();
+    set_callbacks(window);
+    const Toolkit toolkit(window);
+    if (!path.empty()) open_path(app, path);
+    run(app);
+    return 0;
+}
+
+}  // namespace probewarp

@@ -1,0 +1,26 @@
+# Everything comes from Debian 12's packages (script/bootstrap names them) and is included as a system header.
+
+find_package(PkgConfig REQUIRED)
+find_package(glm REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(CLI11 2 REQUIRED)
+find_package(fmt 9 REQUIRED)
+
+find_package(JPEG REQUIRED)
+find_package(glfw3 3.3 REQUIRED)
+find_package(Threads REQUIRED)
+pkg_check_modules(zip REQUIRED IMPORTED_TARGET libzip)
+pkg_check_modules(spng REQUIRED IMPORTED_TARGET spng)
+pkg_check_modules(exif REQUIRED IMPORTED_TARGET libexif)
+pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
+pkg_check_modules(freetype REQUIRED IMPORTED_TARGET freetype2)
+
+# OpenGL 3.3 core, loaded by glad: generated here, from the specification that Debian's python3-glad carries.
+find_program(GLAD_PROGRAM glad PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
+set(glad_dir ${CMAKE_BINARY_DIR}/glad)
+add_custom_command(
+    OUTPUT ${glad_dir}/src/gl.c ${glad_dir}/include/glad/gl.h
+    COMMAND ${GLAD_PROGRAM} --quiet --reproducible --api gl:core=3.3 --extensions "" --out-path ${glad_dir} c
+    COMMENT "Generating the OpenGL loader" VERBATIM)
+add_library(glad STATIC ${glad_dir}/src/gl.c)
+target_include_directories(glad SYSTEM PUBLIC ${glad_dir}/include)

@@ -1,0 +1,57 @@
+// The readers and writers that image_file.cpp's table lists, and the words they share. Private to io.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/bytes.h"
+#include "io/image_file.h"
+
+namespace probewarp {
+
+// Every decoder throws Error with a clause on what is wrong, no file name. None of them trusts a length, an
+// offset or a dimension of the file, and none allocates pixels before check_image_size.
+Image decode_png(Bytes bytes);
+Image decode_jpeg(Bytes bytes);
+Image decode_bmp(Bytes bytes);
+Image decode_tga(Bytes bytes);
+Image decode_gif(Bytes bytes);  ///< the first frame on its canvas
+Image decode_psd(Bytes bytes);  ///< the merged picture
+Image decode_pnm(Bytes bytes);
+
+std::vector<std::byte> encode_png(const Image& image, const EncodeOptions& options);
+std::vector<std::byte> encode_jpeg(const Image& image, const EncodeOptions& options);
+std::vector<std::byte> encode_bmp(const Image& image, const EncodeOptions& options);
+std::vector<std::byte> encode_tga(const Image& image, const EncodeOptions& options);
+
+bool looks_like_tga(Bytes bytes);  ///< a header that makes sense; TGA has no signature
+
+/// The two ways in which most bad files are bad. `label`: "PNG"; `what`: a short noun phrase, plain ASCII.
+inline Error truncated(std::string_view label) {
+    return Error("is truncated; expected a whole " + std::string(label) + " file");
+}
+inline Error damaged(std::string_view label, std::string_view what) {
+    return Error("is damaged (" + std::string(what) + "); expected a sound " + std::string(label) + " file");
+}
+
+/// Profiles and other ancillary data that a file may have inflated or scattered: no more than this is kept.
+inline constexpr std::size_t max_icc_bytes = std::size_t{4} << 20;
+
+/// The profile, unless it says that it is for grey or CMYK: every Image is RGB, where such a profile means
+/// nothing.
+std::vector<std::byte> rgb_profile(Bytes profile);
+
+/// 16-bit sample to the nearest 8-bit one.
+inline std::uint8_t to_8_bits(std::uint16_t v) { return std::uint8_t((v * 255u + 32767u) / 65535u); }
+
+/// A black, fully transparent picture of that size. `bits`: 8 or 16. Throws Error through check_image_size.
+Image blank_image(long long width, long long height, int bits);
+
+inline std::vector<std::uint8_t>& samples_8(Image& image) { return std::get<0>(image.rgba); }
+inline std::vector<std::uint16_t>& samples_16(Image& image) { return std::get<1>(image.rgba); }
+
+}  // namespace probewarp

@@ -1,0 +1,133 @@
+// Which picture formats there are, and the way from a file's bytes to a Picture: the signature decides, never
+// the ending, because endings lie.
+#include "io/image_file.h"
+
+#include <algorithm>
+#include <array>
+#include <new>
+
+#include "io/file.h"
+#include "io/formats.h"
+#include "io/printable.h"
+
+namespace probewarp {
+
+namespace {
+
+using std::string_view;
+
+constexpr std::array png_endings{string_view(".png")};
+constexpr std::array jpeg_endings{string_view(".jpg"), string_view(".jpeg"), string_view(".jpe"),
+                                  string_view(".jfif")};
+constexpr std::array bmp_endings{string_view(".bmp"), string_view(".dib")};
+constexpr std::array gif_endings{string_view(".gif")};
+constexpr std::array psd_endings{string_view(".psd")};
+constexpr std::array pnm_endings{string_view(".ppm"), string_view(".pgm"), string_view(".pbm"),
+                                 string_view(".pnm")};
+constexpr std::array tga_endings{string_view(".tga")};
+
+bool is_png(Bytes bytes) { return begins_with(bytes, "\x89PNG\r\n\x1a\n"); }
+bool is_jpeg(Bytes bytes) { return begins_with(bytes, "\xff\xd8\xff"); }
+bool is_bmp(Bytes bytes) { return begins_with(bytes, "BM"); }
+bool is_gif(Bytes bytes) { return begins_with(bytes, "GIF87a") || begins_with(bytes, "GIF89a"); }
+bool is_psd(Bytes bytes) { return begins_with(bytes, "8BPS"); }
+bool is_pnm(Bytes bytes) {
+    if (bytes.size() < 3 || u8(bytes, 0) != 'P' || u8(bytes, 1) < '1' || u8(bytes, 1) > '6') return false;
+    return string_view(" \t\r\n\v\f#").find(char(u8(bytes, 2))) != string_view::npos;
+}
+
+// TGA stands last: it has no signature, so it is tried only for a file that nothing else claims.
+constexpr std::array<ImageFormat, 7> formats{{
+    {"png", "PNG", png_endings, is_png, decode_png, encode_png},
+    {"jpeg", "JPEG", jpeg_endings, is_jpeg, decode_jpeg, encode_jpeg},
+    {"bmp", "BMP", bmp_endings, is_bmp, decode_bmp, encode_bmp},
+    {"gif", "GIF", gif_endings, is_gif, decode_gif, nullptr},
+    {"psd", "PSD", psd_endings, is_psd, decode_psd, nullptr},
+    {"pnm", "PNM", pnm_endings, is_pnm, decode_pnm, nullptr},
+    {"tga", "TGA", tga_endings, looks_like_tga, decode_tga, encode_tga},
+}};
+
+const ImageFormat* recognised_format(Bytes bytes, const std::string& name) {
+    for (const ImageFormat& format : formats)
+        if (format.recognise(bytes) && (format.name != "tga" || image_format_of(name) == &format))
+            return &format;
+    return nullptr;
+}
+
+std::string name_without_folder(const std::string& name) {
+    const std::string file = std::filesystem::path(name).filename().string();
+    return file.empty() ? name : file;
+}
+
+}  // namespace
+
+std::span<const ImageFormat> image_formats() { return formats; }
+
+const ImageFormat* find_image_format(string_view name) {
+    const auto found =
+        std::find_if(formats.begin(), formats.end(), [&](const auto& f) { return f.name == name; });
+    return found == formats.end() ? nullptr : &*found;
+}
+
+const ImageFormat* image_format_of(const std::filesystem::path& path) {
+    std::string ending = path.extension().string();
+    // By hand: std::tolower depends on the locale.
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    for (const ImageFormat& format : formats)
+        if (std::find(format.extensions.begin(), format.extensions.end(), ending) != format.extensions.end())
+            return &format;
+    return nullptr;
+}
+
+Picture decode_picture(std::vector<std::byte> bytes, const std::string& name) {
+    const std::string called = printable(name);
+    const ImageFormat* format = recognised_format(bytes, name);
+    if (!format)
+        throw Error(called +
+                    ": is not a picture that can be read; expected PNG, JPEG, BMP, TGA, GIF, PSD or PNM");
+    try {
+        Image image = format->decode(bytes);
+        return {std::move(image), name_without_folder(name), std::string(format->name), std::move(bytes)};
+    } catch (const Error& error) {
+        throw Error(called + ": " + printable(error.what()));
+    } catch (const std::bad_alloc&) {
+        throw Error(called + ": needs more memory than there is; expected a smaller picture");
+    }
+}
+
+Picture read_picture(const std::filesystem::path& path) {
+    return decode_picture(read_file(path), path.string());
+}
+
+void check_image_size(long long width, long long height, int bits) {
+    const long long sample_bytes = bits / 8;
+    const bool sides = width >= 1 && height >= 1 && width <= max_image_side && height <= max_image_side;
+    if (sides && std::size_t(width * height * 4 * sample_bytes) <= max_image_bytes) return;
+    throw Error("is " + std::to_string(width) + " x " + std::to_string(height) + " pixels; expected 1 to " +
+                std::to_string(max_image_side) + " pixels a side and at most " +
+                std::to_string(max_image_bytes / 4 / std::size_t(sample_bytes) / 1000000) +
+                " million pixels");
+}
+
+Image blank_image(long long width, long long height, int bits) {
+    check_image_size(width, height, bits);
+    Image image;
+    image.width = int(width);
+    image.height = int(height);
+    const std::size_t samples = std::size_t(width) * std::size_t(height) * 4;
+    if (bits == 16)
+        image.rgba = std::vector<std::uint16_t>(samples);
+    else
+        image.rgba = std::vector<std::uint8_t>(samples);
+    return image;
+}
+
+std::vector<std::byte> rgb_profile(Bytes profile) {
+    const bool other = profile.size() >= 20 &&
+                       (begins_with(profile.subspan(16), "GRAY") || begins_with(profile.subspan(16), "CMYK"));
+    if (other || profile.size() > max_icc_bytes) return {};
+    return {profile.begin(), profile.end()};
+}
+
+}  // namespace probewarp

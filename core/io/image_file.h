@@ -1,0 +1,59 @@
+// Image files, in and out: one reader or writer a format, in one ordered table.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/error.h"
+#include "model/image.h"
+#include "model/probe.h"
+
+namespace probewarp {
+
+struct EncodeOptions {
+    Colour background{255, 255, 255};  ///< under a picture with alpha, where the format has none
+    int quality = 95;                  ///< of JPEG, 1 to 100
+};
+
+struct ImageFormat {
+    std::string_view name;   ///< "png": what --format and the project file call it
+    std::string_view label;  ///< "PNG": what a person reads
+    /// Lower case with the dot, the usual one first; never empty.
+    std::span<const std::string_view> extensions;
+    /// By the first bytes. For TGA, which has no signature, only whether a TGA header would make sense.
+    bool (*recognise)(std::span<const std::byte> bytes);
+    /// Throws Error: a clause on what is wrong and what is expected, no file name. Grey and palettes become
+    /// RGBA; 16 bits a sample stay (PNG, PSD, PNM), all else is 8. ICC profiles are kept where they are for
+    /// RGB (PNG, JPEG), the resolution where the file has one (PNG, JPEG, BMP).
+    Image (*decode)(std::span<const std::byte> bytes);
+    /// Null where the format is only read. Throws Error. The same image and options give the same bytes. PNG
+    /// keeps everything; BMP and TGA round 16 bits to 8 and drop the profile; JPEG has the background under
+    /// it besides.
+    std::vector<std::byte> (*encode)(const Image& image, const EncodeOptions& options);
+};
+
+/// In the order in which they are tried.
+std::span<const ImageFormat> image_formats();
+
+/// The format of that name ("png") or null.
+const ImageFormat* find_image_format(std::string_view name);
+
+/// The format that the path's ending names, in any case, or null.
+const ImageFormat* image_format_of(const std::filesystem::path& path);
+
+/// Decodes the bytes of an image file, whatever its ending says; `name` is what errors call it, and its
+/// ending is asked only for TGA, which has no signature. Throws Error: "NAME: what is wrong; what is
+/// expected".
+Picture decode_picture(std::vector<std::byte> bytes, const std::string& name);
+
+/// read_file and decode_picture.
+Picture read_picture(const std::filesystem::path& path);
+
+/// Throws Error unless width, height and depth (8 or 16) are within max_image_side and max_image_bytes.
+/// Readers call it with the header's numbers, before anything is allocated.
+void check_image_size(long long width, long long height, int bits);
+
+}  // namespace probewarp

@@ -1,0 +1,350 @@
+// JPEG in and out through libjpeg-turbo: the picture upright, in RGB, and whole, or an Error. libjpeg reports
+// errors by a jump, so every call that may jump happens inside protect(), where no C++ object can be jumped
+// over.
+#include <csetjmp>
+#include <cstddef>
+#include <cstdio>  // jpeglib.h needs it and does not say so
+#include <cstdlib>
+
+#include <jerror.h>
+#include <jpeglib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <optional>
+
+#include "io/exif.h"
+#include "io/formats.h"
+
+namespace probewarp {
+
+namespace {
+
+// ---- errors ----
+
+enum class Trouble { none, truncated, damaged, memory, scans };
+
+/// libjpeg's error manager (first member, so that its address is ours) and where it jumps to.
+struct Errors {
+    jpeg_error_mgr manager;
+    std::jmp_buf jump;
+    Trouble trouble;
+    char message[JMSG_LENGTH_MAX];
+};
+
+[[noreturn]] void give_up(j_common_ptr codec, Trouble trouble) {
+    auto* errors = reinterpret_cast<Errors*>(codec->err);
+    errors->trouble = trouble;
+    errors->manager.format_message(codec, errors->message);
+    std::longjmp(errors->jump, 1);
+}
+
+void on_error(j_common_ptr codec) {
+    const int code = codec->err->msg_code;
+    const bool memory = code == JERR_OUT_OF_MEMORY || code == JERR_NO_BACKING_STORE;
+    give_up(codec, memory ? Trouble::memory : Trouble::damaged);
+}
+
+/// Level -1 is a warning: the data are bad and libjpeg would go on with made-up pixels. We go on only where
+/// the pixels are sure to be right.
+void on_message(j_common_ptr codec, int level) {
+    if (level >= 0) return;
+    switch (codec->err->msg_code) {
+        case JWRN_EXTRANEOUS_DATA:  // bytes before a marker
+        case JWRN_JFIF_MAJOR:       // a JFIF of the future
+        case JWRN_BOGUS_ICC:        // parts of a profile are missing: it is left out
+        case JWRN_NOT_SEQUENTIAL:   // odd parameters that a sequential scan does not use
+            return;
+        case JWRN_JPEG_EOF:
+            give_up(codec, Trouble::truncated);
+        default:
+            give_up(codec, Trouble::damaged);
+    }
+}
+
+void set_up(Errors& errors) {
+    jpeg_std_error(&errors.manager);
+    errors.manager.error_exit = on_error;
+    errors.manager.emit_message = on_message;
+    errors.manager.output_message = [](j_common_ptr) {};
+    errors.trouble = Trouble::none;
+    errors.message[0] = 0;
+}
+
+/// Runs `step`, which calls libjpeg and creates nothing that has a destructor. False where it jumped out.
+template <class Step>
+[[gnu::noinline]] bool protect(Errors& errors, const Step& step) {
+    if (setjmp(errors.jump) != 0) return false;
+    step();
+    return true;
+}
+
+[[noreturn]] void report(const Errors& errors) {
+    if (errors.trouble == Trouble::truncated) throw truncated("JPEG");
+    if (errors.trouble == Trouble::memory)
+        throw Error("needs too much memory while it is read; expected a smaller or a sequential JPEG");
+    if (errors.trouble == Trouble::scans)
+        throw Error("has far more scans than its size explains; expected a usual progressive JPEG");
+    throw damaged("JPEG", errors.message);
+}
+
+// ---- reading ----
+
+/// A progressive file can hold hundreds of scans, each next to no bytes long and each over the whole picture,
+/// at some 50 ms for 100 million pixels. Common encoders make about ten; the limit keeps the time below a
+/// second or so.
+int scan_limit(double pixels) { return int(std::clamp(2e9 / pixels, 20.0, 64.0)); }
+
+void on_progress(j_common_ptr codec) {
+    const auto* jpeg = reinterpret_cast<j_decompress_ptr>(codec);
+    if (jpeg->input_scan_number > scan_limit(double(jpeg->image_width) * jpeg->image_height))
+        give_up(codec, Trouble::scans);
+}
+
+struct Decoder {
+    Errors errors;
+    jpeg_progress_mgr progress{};
+    jpeg_decompress_struct jpeg{};
+    unsigned char* icc = nullptr;
+    unsigned icc_bytes = 0;
+
+    Decoder() {
+        set_up(errors);
+        jpeg.err = &errors.manager;
+        if (!protect(errors, [this] { jpeg_create_decompress(&jpeg); })) throw std::bad_alloc();
+        progress.progress_monitor = on_progress;
+        jpeg.progress = &progress;
+        // The coefficients of a progressive file: as much as the pixels of the largest picture.
+        jpeg.mem->max_memory_to_use = long(max_image_bytes);
+    }
+    Decoder(const Decoder&) = delete;
+    Decoder& operator=(const Decoder&) = delete;
+    ~Decoder() {
+        std::free(icc);
+        jpeg_destroy_decompress(&jpeg);
+    }
+
+    template <class Step>
+    void run(const Step& step) {
+        if (!protect(errors, step)) report(errors);
+    }
+};
+
+void read_header(Decoder& decoder, Bytes bytes) {
+    decoder.run([&] {
+        jpeg_mem_src(&decoder.jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+        jpeg_save_markers(&decoder.jpeg, JPEG_APP0 + 1, 0xFFFF);  // EXIF
+        jpeg_save_markers(&decoder.jpeg, JPEG_APP0 + 2, 0xFFFF);  // ICC
+        jpeg_read_header(&decoder.jpeg, TRUE);
+        jpeg_read_icc_profile(&decoder.jpeg, &decoder.icc, &decoder.icc_bytes);
+    });
+    check_image_size(decoder.jpeg.image_width, decoder.jpeg.image_height, 8);
+    // The arithmetic decoder makes up zeros without end from no bytes at all, and nobody writes such files.
+    if (decoder.jpeg.arith_code) throw Error("is arithmetic-coded; expected a Huffman-coded JPEG file");
+}
+
+/// The rows as they come: RGBA, or CMYK in the same four bytes.
+void read_rows(Decoder& decoder, std::vector<std::uint8_t>& rgba) {
+    jpeg_decompress_struct& jpeg = decoder.jpeg;
+    unsigned char* rows = rgba.data();
+    decoder.run([&jpeg, rows] {
+        const std::size_t row_bytes = std::size_t(jpeg.output_width) * 4;
+        while (jpeg.output_scanline < jpeg.output_height) {
+            JSAMPROW row = rows + jpeg.output_scanline * row_bytes;
+            jpeg_read_scanlines(&jpeg, &row, 1);
+        }
+        jpeg_finish_decompress(&jpeg);  // reads up to the end marker
+    });
+}
+
+/// The plain conversion, without a profile. Adobe's programs store the inks inverted.
+void cmyk_to_rgba(std::vector<std::uint8_t>& samples, bool inverted) {
+    for (std::size_t i = 0; i < samples.size(); i += 4) {
+        const auto light = [&](std::size_t k) { return inverted ? samples[i + k] : 255u - samples[i + k]; };
+        const unsigned k = light(3);
+        for (std::size_t c = 0; c < 3; ++c) samples[i + c] = std::uint8_t((light(c) * k + 127) / 255);
+        samples[i + 3] = 255;
+    }
+}
+
+std::optional<Resolution> jfif_resolution(const jpeg_decompress_struct& jpeg) {
+    if (!jpeg.saw_JFIF_marker || jpeg.X_density == 0 || jpeg.Y_density == 0) return {};
+    if (jpeg.density_unit != 1 && jpeg.density_unit != 2) return {};
+    const double per_metre = jpeg.density_unit == 1 ? 1 / 0.0254 : 100;
+    return Resolution{std::uint32_t(jpeg.X_density * per_metre + 0.5),
+                      std::uint32_t(jpeg.Y_density * per_metre + 0.5)};
+}
+
+Exif read_exif(const jpeg_decompress_struct& jpeg) {
+    for (const jpeg_marker_struct* m = jpeg.marker_list; m; m = m->next) {
+        const Bytes data = std::as_bytes(std::span(m->data, m->data_length));
+        if (m->marker == JPEG_APP0 + 1 && begins_with(data, "Exif\0")) return parse_exif(data);
+    }
+    return {};
+}
+
+/// Turns the picture upright. `orientation`: EXIF's, 1 to 8.
+void apply_orientation(Image& image, int orientation) {
+    if (orientation == 1) return;
+    const std::ptrdiff_t w = image.width, h = image.height;
+    // Where the new top-left pixel comes from, and how far in the old pixels one step right and one step down
+    // go.
+    struct Walk {
+        std::ptrdiff_t start, right, down;
+    };
+    const std::array<Walk, 9> walks{{{0, 1, w},  // 0 is no orientation
+                                     {0, 1, w},
+                                     {w - 1, -1, w},
+                                     {w * h - 1, -1, -w},
+                                     {w * (h - 1), 1, -w},
+                                     {0, w, 1},
+                                     {w * (h - 1), -w, 1},
+                                     {w * h - 1, -w, -1},
+                                     {w - 1, w, -1}}};
+    const Walk walk = walks[std::size_t(orientation)];
+    if (orientation >= 5) {
+        std::swap(image.width, image.height);
+        if (image.resolution) std::swap(image.resolution->x, image.resolution->y);
+    }
+    const std::vector<std::uint8_t> old = std::move(samples_8(image));
+    std::vector<std::uint8_t> turned(old.size());
+    auto out = turned.begin();
+    for (std::ptrdiff_t y = 0; y < image.height; ++y)
+        for (std::ptrdiff_t x = 0; x < image.width; ++x)
+            out = std::copy_n(old.data() + (walk.start + x * walk.right + y * walk.down) * 4, 4, out);
+    image.rgba = std::move(turned);
+}
+
+}  // namespace
+
+Image decode_jpeg(Bytes bytes) {
+    Decoder decoder;
+    read_header(decoder, bytes);
+    jpeg_decompress_struct& jpeg = decoder.jpeg;
+    const bool cmyk = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
+    jpeg.out_color_space = cmyk ? JCS_CMYK : JCS_EXT_RGBA;
+    // Reads the whole of a progressive file: before the pixels, so that a bad one never takes memory for
+    // both.
+    decoder.run([&] { jpeg_start_decompress(&jpeg); });
+
+    Image image = blank_image(jpeg.output_width, jpeg.output_height, 8);
+    read_rows(decoder, samples_8(image));
+    if (cmyk)
+        cmyk_to_rgba(samples_8(image), jpeg.saw_Adobe_marker);
+    else if (decoder.icc)
+        image.icc = rgb_profile(std::as_bytes(std::span(decoder.icc, decoder.icc_bytes)));
+    const Exif exif = read_exif(jpeg);
+    image.resolution = jfif_resolution(jpeg);
+    if (!image.resolution) image.resolution = exif.resolution;
+    apply_orientation(image, exif.orientation);
+    return image;
+}
+
+// ---- writing ----
+
+namespace {
+
+struct Encoder {
+    Errors errors;
+    jpeg_compress_struct jpeg{};
+    unsigned char* out = nullptr;
+    unsigned long out_bytes = 0;
+
+    Encoder() {
+        set_up(errors);
+        jpeg.err = &errors.manager;
+        if (!protect(errors, [this] { jpeg_create_compress(&jpeg); })) throw std::bad_alloc();
+    }
+    Encoder(const Encoder&) = delete;
+    Encoder& operator=(const Encoder&) = delete;
+    ~Encoder() {
+        jpeg_destroy_compress(&jpeg);
+        std::free(out);
+    }
+
+    template <class Step>
+    void run(const Step& step) {
+        if (protect(errors, step)) return;
+        if (errors.trouble == Trouble::memory) throw std::bad_alloc();
+        throw Error(std::string("cannot be written as JPEG: ") + errors.message);
+    }
+};
+
+/// Dots per inch or per centimetre, whichever gives the pixels per metre back; else inches, the finer of the
+/// two. None where neither fits into JFIF's 16 bits.
+void set_density(jpeg_compress_struct& jpeg, const Resolution& resolution) {
+    constexpr double inch = 1 / 0.0254, centimetre = 100;  // dots per metre
+    const auto dots = [](std::uint32_t per_metre, double unit) { return std::lround(per_metre / unit); };
+    const auto fits = [&](std::uint32_t per_metre, double unit) {
+        return dots(per_metre, unit) >= 1 && dots(per_metre, unit) <= 65535;
+    };
+    const auto both_fit = [&](double unit) { return fits(resolution.x, unit) && fits(resolution.y, unit); };
+    const bool centimetres_exact = resolution.x % 100 == 0 && resolution.y % 100 == 0 && both_fit(centimetre);
+    const double unit = !centimetres_exact && both_fit(inch) ? inch : centimetre;
+    if (!both_fit(unit)) return;
+    jpeg.density_unit = unit == inch ? 1 : 2;
+    jpeg.X_density = UINT16(dots(resolution.x, unit));
+    jpeg.Y_density = UINT16(dots(resolution.y, unit));
+}
+
+void set_parameters(jpeg_compress_struct& jpeg, const Image& image, int quality) {
+    jpeg.image_width = JDIMENSION(image.width);
+    jpeg.image_height = JDIMENSION(image.height);
+    jpeg.input_components = 3;
+    jpeg.in_color_space = JCS_RGB;
+    jpeg_set_defaults(&jpeg);
+    jpeg_set_quality(&jpeg, std::clamp(quality, 1, 100), TRUE);
+    // Colours at full size (4:4:4): a deformed picture is worked on further, and edges of colour must not
+    // blur.
+    for (int i = 0; i < jpeg.num_components; ++i)
+        jpeg.comp_info[i].h_samp_factor = jpeg.comp_info[i].v_samp_factor = 1;
+    if (image.resolution) set_density(jpeg, *image.resolution);
+}
+
+/// One row over the background, as 8-bit RGB. Exact: one division, rounded to the nearest.
+template <class Sample>
+void flatten(const Sample* rgba, std::span<std::uint8_t> rgb, Colour background) {
+    constexpr std::uint64_t full = std::numeric_limits<Sample>::max();
+    constexpr std::uint64_t scale = full / 255;  // of a sample against an 8-bit one
+    const std::array<std::uint64_t, 3> under{background.r * scale, background.g * scale,
+                                             background.b * scale};
+    for (std::size_t i = 0; i < rgb.size(); rgba += 4)
+        for (std::size_t c = 0; c < 3; ++c, ++i)
+            rgb[i] = std::uint8_t(
+                (rgba[c] * std::uint64_t(rgba[3]) + under[c] * (full - rgba[3]) + full * scale / 2) /
+                (full * scale));
+}
+
+template <class Sample>
+void write_rows(Encoder& encoder, const Image& image, const std::vector<Sample>& rgba, Colour background) {
+    const std::size_t width = std::size_t(image.width);
+    std::vector<std::uint8_t> row(width * 3);
+    for (int y = 0; y < image.height; ++y) {
+        flatten(rgba.data() + std::size_t(y) * width * 4, row, background);
+        JSAMPROW pointer = row.data();
+        encoder.run([&] { jpeg_write_scanlines(&encoder.jpeg, &pointer, 1); });
+    }
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_jpeg(const Image& image, const EncodeOptions& options) {
+    Encoder encoder;
+    encoder.run([&] {
+        jpeg_mem_dest(&encoder.jpeg, &encoder.out, &encoder.out_bytes);
+        set_parameters(encoder.jpeg, image, options.quality);
+        jpeg_start_compress(&encoder.jpeg, TRUE);
+        if (!image.icc.empty() && image.icc.size() <= max_icc_bytes)
+            jpeg_write_icc_profile(&encoder.jpeg, reinterpret_cast<const JOCTET*>(image.icc.data()),
+                                   unsigned(image.icc.size()));
+    });
+    std::visit([&](const auto& rgba) { write_rows(encoder, image, rgba, options.background); }, image.rgba);
+    encoder.run([&] { jpeg_finish_compress(&encoder.jpeg); });
+    const auto* first = reinterpret_cast<const std::byte*>(encoder.out);
+    return {first, first + encoder.out_bytes};
+}
+
+}  // namespace probewarp

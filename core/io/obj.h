@@ -1,0 +1,14 @@
+// The deformed mesh as a Wavefront OBJ.
+#pragma once
+
+#include <string>
+
+#include "model/document.h"
+
+namespace probewarp {
+
+/// Vertices in grid order as image pixels with z = 0, texture coordinates with v up, triangles; nine
+/// significant digits, so that every float comes back.
+std::string encode_obj(const Document& document, const Deformation& deformation);
+
+}  // namespace probewarp

@@ -1,0 +1,263 @@
+#include "io/project.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <initializer_list>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "io/file.h"
+#include "io/image_file.h"
+#include "io/zip_archive.h"
+
+namespace probewarp {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t max_json_bytes = std::size_t{16} << 20;
+constexpr int max_json_depth = 8;
+constexpr std::size_t max_probes = 10000;
+constexpr double farthest = 1e7;   // image pixels
+constexpr double most_turns = 1e6; // radians
+
+std::vector<std::byte> to_bytes(std::string_view text) {
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+}
+
+/// Parses with a limit on depth, and without a key that stands twice in one object.
+Json parse(std::span<const std::byte> bytes) {
+    if (bytes.size() > max_json_bytes) throw Error("project.json is too long; expected at most 16 MiB");
+    std::vector<std::set<std::string>> keys(max_json_depth + 2);
+    const auto watch = [&keys](int depth, Json::parse_event_t event, Json& parsed) {
+        if (depth > max_json_depth)
+            throw Error(fmt::format("project.json is nested deeper than {} levels", max_json_depth));
+        const auto level = std::size_t(depth);
+        if (event == Json::parse_event_t::object_start) keys[level + 1].clear();
+        if (event == Json::parse_event_t::key && !keys[level].insert(parsed.get<std::string>()).second)
+            throw Error(fmt::format("project.json has the field \"{}\" twice", parsed.get<std::string>().substr(0, 80)));
+        return true;
+    };
+    const auto* first = reinterpret_cast<const char*>(bytes.data());
+    try {
+        return Json::parse(first, first + bytes.size(), watch);
+    } catch (const Json::parse_error& error) {
+        throw Error(fmt::format("project.json is not valid JSON at byte {}", error.byte));
+    } catch (const Json::out_of_range&) {
+        throw Error("project.json has a number that is too large");
+    }
+}
+
+/// An object's fields, taken one by one; what is left at the end is unknown.
+class Fields {
+  public:
+    Fields(const Json& json, std::string place) : json_(json), place_(std::move(place)) {
+        if (!json.is_object()) throw wrong("", "an object");
+    }
+
+    Error wrong(const std::string& field, std::string_view expected) const {
+        return Error(fmt::format("project.json: {} is wrong or missing; expected {}",
+                                 place_.empty() || field.empty() ? place_ + field : place_ + "." + field, expected));
+    }
+    const Json& take(const char* field) {
+        const auto found = json_.find(field);
+        if (found == json_.end()) throw wrong(field, "it to be there");
+        taken_.insert(field);
+        return *found;
+    }
+    double number(const char* field, double least, double most) {
+        return checked(take(field), field, least, most);
+    }
+    int whole(const char* field, int least, int most) {
+        const Json& value = take(field);
+        if (!value.is_number_integer() || value < least || value > most)
+            throw wrong(field, fmt::format("a whole number from {} to {}", least, most));
+        return value.get<int>();
+    }
+    bool yes(const char* field) {
+        const Json& value = take(field);
+        if (!value.is_boolean()) throw wrong(field, "true or false");
+        return value.get<bool>();
+    }
+    std::string text(const char* field, std::size_t longest) {
+        const Json& value = take(field);
+        std::string text = value.is_string() ? value.get<std::string>() : std::string();
+        if (!value.is_string() || text.size() > longest ||
+            std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
+            throw wrong(field, fmt::format("a line of text of at most {} bytes", longest));
+        return text;
+    }
+    glm::dvec2 point(const char* field) {
+        const Json& value = take(field);
+        if (!value.is_array() || value.size() != 2) throw wrong(field, "two numbers");
+        return {checked(value[0], field, -farthest, farthest), checked(value[1], field, -farthest, farthest)};
+    }
+    void finish() const {
+        for (const auto& [key, value] : json_.items())
+            if (!taken_.contains(key))
+                throw Error(fmt::format("project.json has the field \"{}\"{}, which this version does not know; it was "
+                                        "written by a later version or by hand",
+                                        key.substr(0, 80), place_.empty() ? "" : " in " + place_));
+    }
+
+  private:
+    double checked(const Json& value, const char* field, double least, double most) const {
+        if (!value.is_number() || !(value.get<double>() >= least) || !(value.get<double>() <= most))
+            throw wrong(field, fmt::format("a number from {:g} to {:g}", least, most));
+        return value.get<double>();
+    }
+
+    const Json& json_;
+    std::string place_;
+    std::set<std::string> taken_;
+};
+
+Colour colour_from(Fields& fields) {
+    const std::string text = fields.text("colour", 7);
+    if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdef", 1) != std::string::npos)
+        throw fields.wrong("colour", "#rrggbb in lower case");
+    const unsigned long value = std::strtoul(text.c_str() + 1, nullptr, 16);
+    return {std::uint8_t(value >> 16), std::uint8_t(value >> 8), std::uint8_t(value)};
+}
+
+Json to_json(const Probe& probe) {
+    return {{"id", probe.id},
+            {"name", probe.name},
+            {"colour", to_hex(probe.colour)},
+            {"rest", {probe.rest.x, probe.rest.y}},
+            {"now", {probe.now.x, probe.now.y}},
+            {"angle_radians", probe.angle},
+            {"radius", probe.radius},
+            {"locked", probe.locked},
+            {"visible", probe.visible}};
+}
+
+Probe probe_from(const Json& json, const std::string& place) {
+    Fields fields(json, place);
+    Probe probe;
+    probe.id = fields.whole("id", 1, std::numeric_limits<int>::max() - 1);
+    probe.name = fields.text("name", 200);
+    probe.colour = colour_from(fields);
+    probe.rest = fields.point("rest");
+    probe.now = fields.point("now");
+    probe.angle = fields.number("angle_radians", -most_turns, most_turns);
+    probe.radius = fields.number("radius", 1e-3, farthest);
+    probe.locked = fields.yes("locked");
+    probe.visible = fields.yes("visible");
+    fields.finish();
+    return probe;
+}
+
+/// The place of the picture's bytes in the archive: "image" with its format's usual ending.
+std::string image_member(const Picture& picture) {
+    return fmt::format("image{}", find_image_format(picture.format)->extensions[0]);
+}
+
+/// Everything but the picture, and the name of its member and of the file it came from.
+struct Parsed {
+    Document document;
+    std::string image_file, image_name;
+};
+
+Parsed parse_project(std::span<const std::byte> bytes) {
+    const Json json = parse(bytes);
+    Fields fields(json, "");
+    const Json& format = fields.take("format");
+    if (!format.is_number_integer() || format != project_format)
+        throw Error(fmt::format("project.json has format {}; this version reads format {}",
+                                format.is_number_integer() ? format.dump() : "unknown", project_format));
+    Parsed parsed;
+    Fields image(fields.take("image"), "image");
+    parsed.image_file = image.text("file", 80);
+    parsed.image_name = image.text("name", 1000);
+    image.finish();
+    Fields mesh(fields.take("mesh"), "mesh");
+    parsed.document.cells = mesh.whole("cells", min_cells, max_cells);
+    mesh.finish();
+    parsed.document.weights = fields.text("weights", 80);
+    if (!find_weight_scheme(parsed.document.weights)) throw fields.wrong("weights", "a weight scheme that is known");
+    parsed.document.blend = fields.text("blend", 80);
+    if (!find_blend_method(parsed.document.blend)) throw fields.wrong("blend", "a blend method that is known");
+    const Json& probes = fields.take("probes");
+    if (!probes.is_array() || probes.size() > max_probes)
+        throw fields.wrong("probes", fmt::format("a list of at most {} probes", max_probes));
+    std::set<int> ids;
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        parsed.document.probes.push_back(probe_from(probes[i], fmt::format("probes[{}]", i)));
+        if (!ids.insert(parsed.document.probes.back().id).second)
+            throw Error(fmt::format("project.json: probes[{}].id stands twice; expected ids to differ", i));
+    }
+    fields.finish();
+    return parsed;
+}
+
+Document decode(std::span<const std::byte> bytes) {
+    std::vector<ZipMember> members = read_zip(bytes, max_file_bytes);
+    if (members.empty() || members[0].name != "mimetype" || members[0].bytes != to_bytes(project_mimetype))
+        throw Error("is not a Probewarp project; expected a ZIP archive whose first member is its mimetype");
+    const auto find = [&members](const std::string& name) {
+        const auto found = std::find_if(members.begin(), members.end(), [&](const auto& m) { return m.name == name; });
+        if (found == members.end()) throw Error(fmt::format("has no member {}", name));
+        return found;
+    };
+    Parsed parsed = parse_project(find("project.json")->bytes);
+    auto image = find(parsed.image_file);
+    for (const ZipMember& member : members)
+        if (member.name != "mimetype" && member.name != "project.json" && member.name != parsed.image_file)
+            throw Error(fmt::format("has a member {} that this version does not know", member.name));
+    Picture picture = decode_picture(std::move(image->bytes), parsed.image_file);
+    picture.name = parsed.image_name;
+    parsed.document.picture = std::make_shared<const Picture>(std::move(picture));
+    check_size(parsed.document);
+    return std::move(parsed.document);
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_project(const Document& document) {
+    Json probes = Json::array();
+    for (const Probe& probe : document.probes) probes.push_back(to_json(probe));
+    const Picture& picture = *document.picture;
+    const Json json{{"format", project_format},
+                    {"image", {{"file", image_member(picture)}, {"name", picture.name}}},
+                    {"mesh", {{"cells", document.cells}}},
+                    {"weights", document.weights},
+                    {"blend", document.blend},
+                    {"probes", std::move(probes)}};
+    // The picture is stored as it is: its own format has compressed it already, or it is quick to write.
+    const ZipMember members[] = {{"mimetype", to_bytes(project_mimetype), true},
+                                 {"project.json", to_bytes(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"), false},
+                                 {image_member(picture), picture.original, true}};
+    return write_zip(members);
+}
+
+Document decode_project(std::span<const std::byte> bytes, const std::string& name) {
+    try {
+        return decode(bytes);
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", name, error.what()));
+    }
+}
+
+bool is_project(std::span<const std::byte> bytes) { return is_zip(bytes); }
+
+Document read_document(const std::filesystem::path& path) {
+    std::vector<std::byte> bytes = read_file(path);
+    if (is_project(bytes)) return decode_project(bytes, path.string());
+    Document document;
+    Picture picture = decode_picture(std::move(bytes), path.string());
+    picture.name = path.filename().string();
+    for (char& c : picture.name)  // a project holds the name as one line of text
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
+    document.picture = std::make_shared<const Picture>(std::move(picture));
+    return document;
+}
+
+}  // namespace probewarp

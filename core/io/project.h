@@ -1,0 +1,32 @@
+// Project files, name.probewarp: a ZIP of `mimetype`, `project.json` and the picture's own bytes, so that it
+// opens wherever it is moved. docs/project-format.md describes it.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/document.h"
+#include "model/error.h"
+
+namespace probewarp {
+
+inline constexpr int project_format = 1;
+inline constexpr const char* project_extension = ".probewarp";
+inline constexpr const char* project_mimetype = "application/x-probewarp";
+
+/// The document as a project file. Requires a picture. The same document gives the same bytes.
+std::vector<std::byte> encode_project(const Document& document);
+
+/// Throws Error: "NAME: what is wrong; what is expected". Fields that this version does not know are refused,
+/// so that saving again never loses what a later version wrote.
+Document decode_project(std::span<const std::byte> bytes, const std::string& name);
+
+/// A document from a file: a project as it was saved, or a picture without probes.
+Document read_document(const std::filesystem::path& path);
+
+/// Whether the bytes are meant as a project rather than a picture.
+bool is_project(std::span<const std::byte> bytes);
+
+}  // namespace probewarp

@@ -1,0 +1,32 @@
+// ZIP archives as lists of members in memory, read with suspicion and written the same every time.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/error.h"
+
+namespace probewarp {
+
+struct ZipMember {
+    std::string name;
+    std::vector<std::byte> bytes;
+    bool stored = false;  ///< written without compression
+};
+
+inline constexpr std::size_t max_zip_members = 4096;
+
+/// Whether the bytes begin as a ZIP archive with a member does.
+bool is_zip(std::span<const std::byte> bytes);
+
+/// All members in the archive's order. Throws Error (a clause, no file name) where the archive is damaged or
+/// truncated, where a name stands twice or points out of the archive, or where the members are more than
+/// max_zip_members or larger than `limit` bytes together.
+std::vector<ZipMember> read_zip(std::span<const std::byte> bytes, std::size_t limit);
+
+/// The archive of `members` in their order. The same members give the same bytes: the times in it are fixed.
+std::vector<std::byte> write_zip(std::span<const ZipMember> members);
+
+}  // namespace probewarp

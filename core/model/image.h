@@ -1,0 +1,57 @@
+// A picture in memory: straight-alpha RGBA of 8 or 16 bits, with what the file said about its colours and size.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace probewarp {
+
+/// No side longer than this, and no picture whose RGBA takes more than this many bytes: readers refuse it.
+inline constexpr int max_image_side = 32768;
+inline constexpr std::size_t max_image_bytes = std::size_t{384} << 20;
+
+/// Pixels per metre, as PNG's pHYs has it.
+struct Resolution {
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+    friend bool operator==(const Resolution&, const Resolution&) = default;
+};
+
+struct Image {
+    int width = 0;   ///< pixels, >= 1
+    int height = 0;  ///< pixels, >= 1
+    /// height x width x 4 (RGBA, straight alpha), row-major from the top-left corner.
+    std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>> rgba;
+    std::vector<std::byte> icc;            ///< the ICC profile of the colours; empty: sRGB
+    std::optional<Resolution> resolution;  ///< where the file gave one
+
+    int bits() const { return rgba.index() == 0 ? 8 : 16; }
+};
+
+/// The RGBA bytes as they lie in memory (16-bit samples in the machine's order).
+std::span<const std::byte> pixel_bytes(const Image& image);
+
+/// The four samples of pixel (x, y), in the image's own depth. Requires a pixel inside.
+std::array<int, 4> pixel(const Image& image, int x, int y);
+
+/// Whether any pixel is not fully opaque.
+bool has_alpha(const Image& image);
+
+/// A picture as it was opened: what a project stores, and what the renderer shows.
+struct Picture {
+    Image image;
+    std::string name;                 ///< the file's name without its folder
+    std::string format;               ///< the reader's row: "png", "jpeg", ...
+    std::vector<std::byte> original;  ///< the file's bytes, for the project
+};
+
+using PicturePtr = std::shared_ptr<const Picture>;
+
+}  // namespace probewarp

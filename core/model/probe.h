@@ -1,0 +1,46 @@
+// A probe: a place on the picture that a person drags and turns.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <span>
+#include <string>
+
+#include "math/dual_complex.h"
+
+namespace probewarp {
+
+struct Colour {
+    std::uint8_t r = 0, g = 0, b = 0;
+    friend bool operator==(const Colour&, const Colour&) = default;
+};
+
+struct Probe {
+    int id = 0;  ///< unique in its document, > 0
+    std::string name;
+    Colour colour;
+    glm::dvec2 rest{0};   ///< image pixels: where it was put on the undeformed picture
+    glm::dvec2 now{0};    ///< image pixels: where it is now
+    double angle = 0;     ///< radians, clockwise as seen, unwrapped: 4 pi is two turns
+    double radius = 100;  ///< image pixels, > 0: how far it reaches
+    bool locked = false;  ///< cannot be moved by hand
+    bool visible = true;  ///< drawn on the canvas; a hidden probe still deforms
+
+    friend bool operator==(const Probe&, const Probe&) = default;
+};
+
+/// The probe's transformation about `centre` (image pixels): turn by the angle about rest, then move rest to now.
+/// Exactly 1 for a probe that was not moved.
+DualComplex<double> transformation(const Probe& probe, glm::dvec2 centre);
+
+/// Whether the probe stands where it was put, unturned.
+bool at_rest(const Probe& probe);
+
+/// Colours of new probes in turn: Okabe and Ito's, which colour-blind people can tell apart, then lighter ones.
+Colour probe_colour(int index);
+
+/// "#rrggbb".
+std::string to_hex(Colour colour);
+
+}  // namespace probewarp

@@ -1,0 +1,79 @@
+// Draws the deformed picture: the one renderer of window, command line, tests and export.
+// Everything is drawn into framebuffers of its own, whose first row is the top one, so nothing is ever flipped.
+#pragma once
+
+#include <array>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "model/image.h"
+#include "model/mesh.h"
+#include "model/probe.h"
+#include "render/gl_objects.h"
+
+namespace probewarp {
+
+/// What a target shows: target pixel t is the point origin + t / scale of the image's plane.
+struct View {
+    glm::dvec2 origin{0};  ///< image pixels
+    glm::dvec2 scale{1};   ///< target pixels per image pixel, > 0
+    int width = 0;         ///< of the target, pixels
+    int height = 0;
+};
+
+/// The picture's mipmaps from half its size down to one pixel: each pixel the alpha-weighted mean of four.
+std::vector<Image> smaller_levels(const Image& image);
+
+/// A texture of `image` for the window's toolkit to draw, smoothly scaled.
+GlTexture preview_texture(const Image& image);
+
+/// Fills the window itself with one colour, before its toolkit draws into it.
+void clear_window(int width, int height, glm::vec3 colour);
+
+struct DisplayColours {
+    glm::vec3 canvas, light, dark;  ///< beside the picture, and the two of the checkerboard; 0 to 1
+    glm::vec4 lines;                ///< of the mesh, straight alpha
+};
+
+class Renderer {
+  public:
+    /// Needs a loaded context, which must outlive it. Throws Error where a shader does not compile.
+    Renderer();
+
+    /// levels: as smaller_levels gives them. Throws Error where the driver has no texture that large.
+    void set_picture(const Image& image, std::span<const Image> levels);
+    void set_mesh(const Mesh& mesh);
+    /// now: #vertices of the mesh, image pixels
+    void set_positions(std::span<const glm::vec2> now);
+
+    /// Draws the deformed picture as weighted colours, samples x samples texels a target pixel.
+    void draw(const View& view, int samples);
+
+    /// Turns what draw drew into straight-alpha integers, filled with `background` or as transparent as it is, and
+    /// writes them at (left, top) of `image`, whose depth they take.
+    void read_back(Image& image, int left, int top, const View& view, int samples, std::optional<Colour> background);
+
+    /// Shows what draw drew with one sample a pixel: over a checkerboard of squares of `square` pixels inside the
+    /// image's frame, dimmed beside it; with the mesh's lines where asked. Returns the texture that holds it.
+    GLuint display(const View& view, const DisplayColours& colours, double square, bool lines);
+
+  private:
+    void set_view(const GlProgram& program, const View& view, int samples) const;
+    void draw_lines(const View& view, glm::vec4 colour);
+
+    GlProgram mesh_program_, resolve_program_, display_program_, lines_program_;
+    GlVertexArray mesh_array_, empty_array_;
+    GlBuffer rest_, now_, triangles_, edges_;
+    GlTexture picture_;
+    Target layer_, integers_, shown_;
+    std::vector<std::uint32_t> triangle_places_;
+    std::size_t edge_count_ = 0;
+    glm::ivec2 picture_size_{0};
+    int last_level_ = 0;
+};
+
+}  // namespace probewarp

@@ -1,0 +1,11 @@
+# Writes OUTPUT: a header with one Shader a file of FILES, named after it: mesh.vert becomes shaders::mesh_vert.
+set(text "// Generated from shaders/.\n#pragma once\n\n#include <string_view>\n\nnamespace probewarp {\n\n")
+string(APPEND text "struct Shader {\n    std::string_view file;\n    std::string_view source;\n};\n\nnamespace shaders {\n")
+foreach(path IN LISTS FILES)
+    cmake_path(GET path FILENAME file)
+    string(REPLACE "." "_" name ${file})
+    file(READ ${path} source)
+    string(APPEND text "inline constexpr Shader ${name}{\"shaders/${file}\", R\"GLSL(${source})GLSL\"};\n")
+endforeach()
+string(APPEND text "}  // namespace shaders\n}  // namespace probewarp\n")
+file(WRITE ${OUTPUT} "${text}")

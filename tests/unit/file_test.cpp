@@ -1,0 +1,175 @@
+// Reading and writing whole files: what is refused, and that a failed save leaves the old file alone.
+#include "io/file.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+
+#include "temporary_folder.h"
+
+namespace probewarp {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+
+std::vector<std::byte> bytes_of(std::string_view text) {
+    const auto* first = reinterpret_cast<const std::byte*>(text.data());
+    return {first, first + text.size()};
+}
+
+/// What a call has to say about its Error; "" where there was none.
+template <class Call>
+std::string error_of(const Call& call) {
+    try {
+        call();
+        return "";
+    } catch (const Error& error) {
+        return error.what();
+    }
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+mode_t mode_of(const fs::path& path) {
+    struct stat status {};
+    EXPECT_EQ(::stat(path.c_str(), &status), 0);
+    return status.st_mode & 07777;
+}
+
+struct FileTest : ::testing::Test {
+    TemporaryFolder folder;
+    fs::path path = folder.path / "file";
+
+    void put(std::string_view text) const { std::ofstream(path, std::ios::binary) << text; }
+    std::string got() const {
+        std::ifstream in(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+};
+
+TEST_F(FileTest, ReadsWhatWasWritten) {
+    std::vector<std::byte> all;
+    for (int i = 0; i < 100'000; ++i) all.push_back(std::byte(i * 7 % 256));
+    write_file(path, all);
+    EXPECT_EQ(read_file(path), all);
+}
+
+TEST_F(FileTest, ReadsUpToTheLimitAndNoFurther) {
+    put("12345");
+    EXPECT_EQ(read_file(path, 5).size(), 5u);
+    EXPECT_THAT(error_of([&] { read_file(path, 4); }),
+                HasSubstr("file: is 5 bytes long; expected at most 4"));
+}
+
+TEST_F(FileTest, RefusesToReadWhatIsNoFile) {
+    EXPECT_THAT(error_of([&] { read_file(path); }), HasSubstr("file: cannot be opened: No such file"));
+    EXPECT_THAT(error_of([&] { read_file(folder.path); }), HasSubstr("is a folder; expected a file"));
+    EXPECT_THAT(error_of([&] { read_file("/dev/zero"); }), HasSubstr("/dev/zero: is a device"));
+    put("");
+    EXPECT_THAT(error_of([&] { read_file(path); }), HasSubstr("is empty"));
+}
+
+TEST_F(FileTest, NeverWaitsForAFifo) {
+    ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+    const auto start = std::chrono::steady_clock::now();
+    ::alarm(10);  // rather than hanging the whole run
+    EXPECT_THAT(error_of([&] { read_file(path); }), HasSubstr("is a pipe (FIFO)"));
+    EXPECT_THAT(error_of([&] { write_file(path, bytes_of("x")); }), HasSubstr("it is a pipe (FIFO)"));
+    ::alarm(0);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+}
+
+TEST_F(FileTest, MessagesHoldNoControlCharacter) {
+    const std::string error = error_of([&] { read_file(folder.path / "a\nb\x1b[31m\xff\xc2\x9b\xc3\xa4"); });
+    EXPECT_THAT(error, HasSubstr("a?b?[31m???\xc3\xa4: cannot"));
+}
+
+TEST_F(FileTest, KeepsThePermissionsOfTheOldFileAndGivesANewOneTheUsual) {
+    const mode_t umask = ::umask(027);
+    write_file(path, bytes_of("new"));
+    EXPECT_EQ(mode_of(path), 0640u);
+    ASSERT_EQ(::chmod(path.c_str(), 0604), 0);
+    write_file(path, bytes_of("newer"));
+    ::umask(umask);
+    EXPECT_EQ(mode_of(path), 0604u);
+    EXPECT_EQ(got(), "newer");
+    EXPECT_EQ(names_in(folder.path), std::vector<std::string>{"file"});
+}
+
+TEST_F(FileTest, WritesThroughSymbolicLinks) {
+    const fs::path link = folder.path / "link", second = folder.path / "second";
+    fs::create_directory(folder.path / "sub");
+    path = folder.path / "sub" / "target";
+    fs::create_symlink("sub/target", link);
+    fs::create_symlink(link, second);
+    write_file(second, bytes_of("through a link to nothing yet"));
+    EXPECT_EQ(got(), "through a link to nothing yet");
+    write_file(second, bytes_of("again"));
+    EXPECT_EQ(got(), "again");
+    EXPECT_TRUE(fs::is_symlink(link) && fs::is_symlink(second));
+    EXPECT_EQ(names_in(folder.path / "sub"), std::vector<std::string>{"target"});
+
+    fs::create_symlink("round", folder.path / "round");
+    EXPECT_THAT(error_of([&] { write_file(folder.path / "round", bytes_of("x")); }),
+                HasSubstr("Too many levels"));
+}
+
+TEST_F(FileTest, RefusesToWriteOverWhatIsNoFile) {
+    EXPECT_THAT(
+        error_of([&] { write_file(folder.path, bytes_of("x")); }),
+        ::testing::AllOf(HasSubstr("cannot save " + folder.path.string()), HasSubstr("it is a folder")));
+    EXPECT_THAT(error_of([&] { write_file("/dev/null", bytes_of("x")); }), HasSubstr("it is a device"));
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+    EXPECT_THAT(error_of([&] { write_file(folder.path / "no" / "file", bytes_of("x")); }),
+                HasSubstr("No such file or directory"));
+    EXPECT_THAT(error_of([&] { write_file("", bytes_of("x")); }), HasSubstr("it names no file"));
+    EXPECT_TRUE(names_in(folder.path).empty());
+}
+
+TEST_F(FileTest, LeavesAReadOnlyFileAlone) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may write any file";
+    put("old");
+    ASSERT_EQ(::chmod(path.c_str(), 0444), 0);
+    EXPECT_THAT(error_of([&] { write_file(path, bytes_of("new")); }), HasSubstr("Permission denied"));
+    EXPECT_EQ(got(), "old");
+}
+
+TEST_F(FileTest, AFailedWriteKeepsTheOldFileAndLeavesNoOther) {
+    put("old");
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+    const rlimit small{1000, before.rlim_max};
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+    const std::string error = error_of([&] { write_file(path, std::vector<std::byte>(100'000)); });
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+    std::signal(SIGXFSZ, handler);
+    EXPECT_THAT(error, HasSubstr("cannot save " + path.string() + ": File too large"));
+    EXPECT_EQ(got(), "old");
+    EXPECT_EQ(names_in(folder.path), std::vector<std::string>{"file"});
+}
+
+TEST_F(FileTest, TakesNamesOfTheGreatestLength) {
+    path = folder.path / std::string(255, 'n');
+    write_file(path, bytes_of("x"));
+    EXPECT_EQ(got(), "x");
+    EXPECT_EQ(names_in(folder.path).size(), 1u);
+}
+
+}  // namespace
+}  // namespace probewarp
