@@ -109,12 +109,15 @@ struct ProbePainter {
     }
 };
 
-void draw_label(const App& app, ImDrawList* list, ImVec2 at, const std::string& text, float opacity, float rounding) {
+void draw_label(const App& app, ImDrawList* list, ImVec2 at, const std::string& text, ImU32 ink, float opacity,
+                float rounding) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const ImVec2 pad{app.px(12), app.px(5)};
     list->AddRectFilled(at, {at.x + size.x + 2 * pad.x, at.y + size.y + 2 * pad.y}, IM_COL32(0x0d, 0x0f, 0x12, int(255 * opacity)), rounding);
-    list->AddText({at.x + pad.x, at.y + pad.y}, IM_COL32(0xdf, 0xe3, 0xea, 255), text.c_str());
+    list->AddText({at.x + pad.x, at.y + pad.y}, ink, text.c_str());
 }
+
+constexpr ImU32 bright = IM_COL32(0xdf, 0xe3, 0xea, 255), calm = IM_COL32(0xa4, 0xab, 0xb7, 255);
 
 std::string signed_number(double value) { return fmt::format("{}{:.0f}", std::round(value) < 0 ? "−" : "+", std::abs(value)); }
 
@@ -129,14 +132,16 @@ void draw_gesture_label(const App& app, const ProbePainter& painter) {
                                  : fmt::format("{}, {} px   {:.0f}°", signed_number(way.x), signed_number(way.y),
                                                probe->angle * 180 / std::numbers::pi);
     const ImVec2 middle = painter.at(to_canvas(editor.view, probe->now));
-    draw_label(app, painter.list, {std::round(middle.x + app.px(32)), std::round(middle.y - app.px(74))}, text, 0.88f, app.px(6));
+    draw_label(app, painter.list, {std::round(middle.x + app.px(32)), std::round(middle.y - app.px(74))}, text, bright, 0.88f, app.px(6));
 }
 
 void draw_hint(const App& app, ImDrawList* list, float left, float bottom, float width) {
     const std::string text(app.editor.tool->hint);
+    ImGui::PushFont(app.fonts.small);
     const float text_width = ImGui::CalcTextSize(text.c_str()).x + app.px(24);
-    if (text_width > width || app.editor.gesture) return;
-    draw_label(app, list, {std::round(left + (width - text_width) / 2), bottom - app.px(34)}, text, 0.6f, app.px(13));
+    if (text_width <= width && !app.editor.gesture)
+        draw_label(app, list, {std::round(left + (width - text_width) / 2), bottom - app.px(32)}, text, calm, 0.6f, app.px(12));
+    ImGui::PopFont();
 }
 
 void choose_cursor(const Editor& editor) {

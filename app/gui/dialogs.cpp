@@ -73,18 +73,19 @@ void draw_export_settings(App& app) {
 
     const int choices[] = {1, 2, 3, 4, 8};
     row_label(app, "Samples", 92);
-    ImGui::SetNextItemWidth(width);
     const auto text = [](int n) { return n == 1 ? std::string("1: exact pixels") : fmt::format("{0} × {0}: smooth edges", n); };
-    if (ImGui::BeginCombo("##samples", text(dialog.settings.samples).c_str())) {
+    if (begin_combo(app, "##samples", text(dialog.settings.samples).c_str(), width)) {
         for (const int n : choices)
             if (ImGui::Selectable(text(n).c_str(), n == dialog.settings.samples)) dialog.settings.samples = n;
         ImGui::EndCombo();
     }
     row_label(app, "Canvas", 92);
-    ImGui::SetNextItemWidth(width);
-    int canvas = int(dialog.settings.canvas);
-    if (ImGui::Combo("##canvas", &canvas, "The picture's rectangle\0All of the deformed picture\0\0"))
-        dialog.settings.canvas = Canvas(canvas);
+    const char* const canvases[] = {"The picture's rectangle", "All of the deformed picture"};
+    if (begin_combo(app, "##canvas", canvases[int(dialog.settings.canvas)], width)) {
+        for (const Canvas canvas : {Canvas::image, Canvas::fit})
+            if (ImGui::Selectable(canvases[int(canvas)], canvas == dialog.settings.canvas)) dialog.settings.canvas = canvas;
+        ImGui::EndCombo();
+    }
 
     row_label(app, "Background", 92);
     ImGui::Checkbox("Transparent", &dialog.transparent);

@@ -80,7 +80,7 @@ void draw_probe_row(App& app, Probe& probe) {
 
 void draw_probes(App& app) {
     bool add = false;
-    if (section(app, "Probes", app.probes_open, &add)) {
+    if (section(app, "probes", "Probes", app.probes_open, &add)) {
         if (app.editor.document.probes.empty()) {
             ImGui::PushTextWrapPos(0);
             ImGui::TextDisabled("None yet. Double-click the picture to put one there.");
@@ -113,7 +113,7 @@ void draw_chosen_probe(App& app) {
     ImGui::Dummy({0, app.px(4)});
     ImGui::Separator();
     ImGui::Dummy({0, app.px(4)});
-    if (!section(app, (probe->name + "###chosen").c_str(), app.probe_open)) return;
+    if (!section(app, "chosen", probe->name.c_str(), app.probe_open)) return;
     ImGui::BeginDisabled(probe->locked);
     point_fields(app, "Now", probe->now, *probe);
     point_fields(app, "Rest", probe->rest, *probe);
@@ -136,11 +136,9 @@ void draw_chosen_probe(App& app) {
 template <class Rows>
 void method_combo(App& app, const char* label, std::string& name, const Rows& rows, const char* step) {
     row_label(app, label, 68);
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
     const auto chosen = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.name == name; });
-    ImGui::PushStyleColor(ImGuiCol_FrameBg, app.theme.raised);
     ImGui::PushID(label);
-    if (ImGui::BeginCombo("##method", std::string(chosen->label).c_str())) {
+    if (begin_combo(app, "##method", std::string(chosen->label).c_str(), ImGui::GetContentRegionAvail().x)) {
         for (const auto& row : rows)
             if (ImGui::Selectable(std::string(row.label).c_str(), row.name == name)) {
                 name = std::string(row.name);
@@ -149,7 +147,6 @@ void method_combo(App& app, const char* label, std::string& name, const Rows& ro
         ImGui::EndCombo();
     }
     ImGui::PopID();
-    ImGui::PopStyleColor();
 }
 
 /// A slim slider with a round grip, quadratic so that coarse meshes have room.
@@ -192,7 +189,7 @@ void draw_deformation(App& app) {
     ImGui::Dummy({0, app.px(4)});
     ImGui::Separator();
     ImGui::Dummy({0, app.px(4)});
-    if (!section(app, "Deformation", app.deformation_open)) return;
+    if (!section(app, "deformation", "Deformation", app.deformation_open)) return;
     method_combo(app, "Blend", app.editor.document.blend, blend_methods(), "Blend");
     method_combo(app, "Weights", app.editor.document.weights, weight_schemes(), "Weights");
     mesh_slider(app);

@@ -1,5 +1,8 @@
 #include "gui/widgets.h"
 
+#include <fmt/format.h>
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -53,8 +56,8 @@ bool accent_button(App& app, const char* label, ImVec2 size, const char* symbol,
     return clicked;
 }
 
-bool section(App& app, const char* title, bool& open, bool* add) {
-    ImGui::PushID(title);
+bool section(App& app, const char* id, const char* title, bool& open, bool* add) {
+    ImGui::PushID(id);
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = app.px(24);
     if (ImGui::InvisibleButton("##fold", {width - (add ? app.px(30) : 0), height})) open = !open;
@@ -81,14 +84,39 @@ void row_label(App& app, const char* text, float width) {
     ImGui::SetCursorPos({at.x + app.px(width), at.y});
 }
 
+bool begin_combo(App& app, const char* id, const char* shown, float width) {
+    ImGui::SetNextItemWidth(width);
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, app.theme.raised);
+    ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, app.theme.line);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->ChannelsSplit(2);  // the chevron lies over the frame that BeginCombo draws
+    list->ChannelsSetCurrent(1);
+    draw_icon(app.fonts.icons_small, {at.x + width - app.px(14), at.y + ImGui::GetFrameHeight() / 2}, app.theme.muted, icon::down);
+    list->ChannelsSetCurrent(0);
+    const bool open = ImGui::BeginCombo(id, shown, ImGuiComboFlags_NoArrowButton);
+    list->ChannelsMerge();
+    ImGui::PopStyleColor(2);
+    return open;
+}
+
 bool number_field(App& app, const char* id, double& value, const char* unit, float width, double step, double least,
-                  double most, const char* format) {
+                  double most) {
     double edited = value;
+    // ImGui centres a dragged number; columns of numbers read better from the left, so it is drawn here instead.
+    const bool typing = ImGui::TempInputIsActive(ImGui::GetID(id));
+    const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
+    if (!typing) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_BLACK_TRANS);
     ImGui::SetNextItemWidth(width);
     ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, std::max(1.0f, std::floor(app.px(1))));
-    const bool changed = ImGui::DragScalar(id, ImGuiDataType_Double, &edited, float(step), nullptr, nullptr, format);
+    const bool changed = ImGui::DragScalar(id, ImGuiDataType_Double, &edited, float(step), nullptr, nullptr, "%.1f");
     ImGui::PopStyleVar();
     const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    if (!typing) {
+        ImGui::PopStyleColor();
+        ImGui::GetWindowDrawList()->AddText({from.x + app.px(8), std::round((from.y + to.y - ImGui::GetFontSize()) / 2)},
+                                            ink, fmt::format("{:.1f}", value).c_str());
+    }
     if (ImGui::IsItemActive() && ImGui::IsMouseDragging(0)) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     const float unit_width = app.fonts.small->CalcTextSizeA(app.fonts.small->FontSize, FLT_MAX, 0, unit).x;
     ImGui::GetWindowDrawList()->AddText(app.fonts.small, app.fonts.small->FontSize,

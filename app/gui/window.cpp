@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
+#include <vector>
 
 #include "editor/commands.h"
 #include "gui/actions.h"
@@ -62,7 +64,8 @@ void on_move(GLFWwindow* window, double, double) {
     }
 }
 
-void on_button(GLFWwindow* window, int which, int action, int) {
+void on_button(GLFWwindow* window, int which, int action, int mods) {
+    ImGui_ImplGlfw_MouseButtonCallback(window, which, action, mods);
     static double last_press = -1;
     static glm::dvec2 last_place{0};
     App& app = app_of(window);
@@ -83,7 +86,8 @@ void on_button(GLFWwindow* window, int which, int action, int) {
         press(app.editor, event);
 }
 
-void on_scroll(GLFWwindow* window, double, double steps) {
+void on_scroll(GLFWwindow* window, double across, double steps) {
+    ImGui_ImplGlfw_ScrollCallback(window, across, steps);
     App& app = app_of(window);
     app.wake();
     const PointerEvent event = pointer_event(app);
@@ -112,7 +116,32 @@ int layout_key(int key, int scancode) {
     return key;
 }
 
+/// ImGui looks at keys once a frame, so that a key pressed and released between two frames would be lost: its release
+/// is kept for the next frame.
+struct KeyRelease {
+    int key, scancode, mods;
+};
+std::vector<int> pressed_this_frame;
+std::vector<KeyRelease> late_releases;
+
+void hand_key_to_toolkit(GLFWwindow* window, int key, int scancode, int action, int mods) {
+    const bool just_pressed =
+        std::find(pressed_this_frame.begin(), pressed_this_frame.end(), key) != pressed_this_frame.end();
+    if (action == GLFW_RELEASE && just_pressed) return late_releases.push_back({key, scancode, mods});
+    if (action == GLFW_PRESS) pressed_this_frame.push_back(key);
+    ImGui_ImplGlfw_KeyCallback(window, key, scancode, action, mods);
+}
+
+void release_late_keys(App& app) {
+    pressed_this_frame.clear();
+    for (const KeyRelease& late : std::exchange(late_releases, {})) {
+        ImGui_ImplGlfw_KeyCallback(app.window, late.key, late.scancode, GLFW_RELEASE, late.mods);
+        app.wake();
+    }
+}
+
 void on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
+    hand_key_to_toolkit(window, key, scancode, action, mods);
     App& app = app_of(window);
     app.wake();
     if (action == GLFW_RELEASE || app.modal || (mods & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return;
@@ -121,7 +150,20 @@ void on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
     if (shortcut.key != 0) press_key(app.editor, shortcut);
 }
 
+void on_character(GLFWwindow* window, unsigned character) {
+    ImGui_ImplGlfw_CharCallback(window, character);
+    app_of(window).wake();
+}
+
+void on_enter(GLFWwindow* window, int entered) {
+    ImGui_ImplGlfw_CursorEnterCallback(window, entered);
+    App& app = app_of(window);
+    app.wake();
+    if (!entered) app.editor.pointer.reset();
+}
+
 void on_focus(GLFWwindow* window, int focused) {
+    ImGui_ImplGlfw_WindowFocusCallback(window, focused);
     App& app = app_of(window);
     app.wake();
     if (!focused && app.editor.gesture) cancel(app.editor);
@@ -204,6 +246,8 @@ void set_callbacks(GLFWwindow* window) {
     glfwSetMouseButtonCallback(window, &on_button);
     glfwSetScrollCallback(window, &on_scroll);
     glfwSetKeyCallback(window, &on_key);
+    glfwSetCharCallback(window, &on_character);
+    glfwSetCursorEnterCallback(window, &on_enter);
     glfwSetWindowFocusCallback(window, &on_focus);
     glfwSetWindowCloseCallback(window, &on_close);
     glfwSetDropCallback(window, &on_drop);
@@ -212,13 +256,13 @@ void set_callbacks(GLFWwindow* window) {
     glfwSetWindowContentScaleCallback(window, &on_content_scale);
 }
 
-/// ImGui with its two backends; chains the callbacks that are set already.
+/// ImGui with its two backends. The callbacks are ours and hand on to its own.
 struct Toolkit {
     explicit Toolkit(GLFWwindow* window) {
         ImGui::CreateContext();
         ImGui::GetIO().IniFilename = nullptr;
         ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-        ImGui_ImplGlfw_InitForOpenGL(window, true);
+        ImGui_ImplGlfw_InitForOpenGL(window, false);
         ImGui_ImplOpenGL3_Init("#version 330 core");
     }
     ~Toolkit() {
@@ -289,6 +333,7 @@ void run(App& app) {
         handle_requests(app);
         set_title(app);
         draw_frame(app);
+        release_late_keys(app);
         --app.frames_wanted;
     }
 }
@@ -305,8 +350,8 @@ int run_window(const std::string& path) {
     glfwSetWindowUserPointer(window, &app);
     app.renderer = std::make_unique<Renderer>();
     app.renderer_label = renderer_name();
-    set_callbacks(window);
     const Toolkit toolkit(window);
+    set_callbacks(window);
     if (!path.empty()) open_path(app, path);
     run(app);
     return 0;
