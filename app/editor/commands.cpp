@@ -76,10 +76,10 @@ void toggle_lock(Editor& editor) {
     commit(editor, (probe.locked ? "Lock " : "Unlock ") + probe.name);
 }
 
-void show_whole(Editor& editor) { fit_view(editor); }
-void show_actual(Editor& editor) { zoom_at(editor.view, editor.canvas_size / 2.0, 1 / editor.view.zoom); }
-void zoom_in(Editor& editor) { zoom_at(editor.view, editor.canvas_size / 2.0, 1.5); }
-void zoom_out(Editor& editor) { zoom_at(editor.view, editor.canvas_size / 2.0, 1 / 1.5); }
+void show_whole(Editor& editor) { editor.fit_wanted = true; }
+void show_actual(Editor& editor) { zoom_canvas(editor, editor.canvas_size / 2.0, 1 / editor.view.zoom); }
+void zoom_in(Editor& editor) { zoom_canvas(editor, editor.canvas_size / 2.0, 1.5); }
+void zoom_out(Editor& editor) { zoom_canvas(editor, editor.canvas_size / 2.0, 1 / 1.5); }
 
 constexpr Command all[] = {
     {"File", "New", {'N', true}, nullptr, &ask<Request::new_document>},

@@ -117,11 +117,16 @@ Hit hit_test(const Editor& editor, glm::dvec2 at) {
     return {};
 }
 
-void fit_view(Editor& editor) {
-    if (!has_picture(editor) || editor.canvas_size.x <= 0) return;
+void resize_canvas(Editor& editor, glm::dvec2 size, double scale) {
+    editor.canvas_size = size;
+    editor.scale = scale;
+    if (!has_picture(editor) || !editor.fit_wanted) return;
     const Image& image = editor.document.picture->image;
-    editor.view = fitted({image.width, image.height}, editor.canvas_size, 40 * editor.scale,
-                         std::max(1.0, editor.scale));
+    editor.view = fitted({image.width, image.height}, size, 40 * scale, std::max(1.0, scale));
+}
+
+void zoom_canvas(Editor& editor, glm::dvec2 fixed, double factor) {
+    zoom_at(editor.view, fixed, factor);
     editor.fit_wanted = false;
 }
 

@@ -71,7 +71,7 @@ struct Editor {
     CanvasView view;
     glm::dvec2 canvas_size{0};
     double scale = 1;  ///< screen pixels per pixel of the design
-    bool fit_wanted = true;
+    bool fit_wanted = true;  ///< the whole picture is to be shown, until it is zoomed or panned
 
     const Tool* tool = nullptr;
     int selected = 0;  ///< probe id; 0 for none
@@ -123,6 +123,8 @@ Hit hit_test(const Editor& editor, glm::dvec2 at);
 /// Where the knob of a probe is, canvas pixels.
 glm::dvec2 knob_position(const Editor& editor, const Probe& probe);
 
-void fit_view(Editor& editor);
+/// Tells how large the canvas is; a picture that is shown whole stays so.
+void resize_canvas(Editor& editor, glm::dvec2 size, double scale);
+void zoom_canvas(Editor& editor, glm::dvec2 fixed, double factor);
 
 }  // namespace probewarp

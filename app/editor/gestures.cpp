@@ -39,6 +39,7 @@ void turn_probe(const Editor& editor, Gesture& gesture, Probe& probe, const Poin
 void drag(Editor& editor, const PointerEvent& event) {
     Gesture& gesture = *editor.gesture;
     if (gesture.kind == Gesture::Kind::pan) {
+        editor.fit_wanted = false;
         editor.view.corner = gesture.start_corner + event.at - gesture.pressed.at;
         gesture.last = event.at;
         return;
@@ -102,7 +103,7 @@ void double_click(Editor& editor, const PointerEvent& event) {
 }
 
 void scroll(Editor& editor, const PointerEvent& event, double steps) {
-    if (has_picture(editor) && !editor.gesture) zoom_at(editor.view, event.at, std::pow(1.2, steps));
+    if (has_picture(editor) && !editor.gesture) zoom_canvas(editor, event.at, std::pow(1.2, steps));
 }
 
 }  // namespace probewarp

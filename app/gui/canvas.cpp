@@ -154,8 +154,7 @@ void choose_cursor(const Editor& editor) {
 
 void draw_canvas(App& app, float left, float top, float width, float height) {
     Editor& editor = app.editor;
-    editor.canvas_size = {width, height};
-    editor.scale = double(app.scale);
+    resize_canvas(editor, {width, height}, double(app.scale));
     ImGui::SetNextWindowPos({left, top});
     ImGui::SetNextWindowSize({width, height});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
@@ -171,7 +170,6 @@ void draw_canvas(App& app, float left, float top, float width, float height) {
         ImGui::End();
         return;
     }
-    if (editor.fit_wanted) fit_view(editor);
     update_texture(app, {int(width), int(height)});
     ImDrawList* list = ImGui::GetWindowDrawList();
     if (app.shown.texture != 0)

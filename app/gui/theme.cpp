@@ -45,7 +45,7 @@ DisplayColours display_colours(const Theme& theme) {
     colours.canvas = to_vec3(theme.canvas);
     colours.light = to_vec3(theme.check_light);
     colours.dark = to_vec3(theme.check_dark);
-    colours.lines = theme.is_light ? glm::vec4(0, 0, 0, 0.35f) : glm::vec4(1, 1, 1, 0.3f);
+    colours.lines = theme.is_light ? glm::vec4(0, 0, 0, 0.25f) : glm::vec4(1, 1, 1, 0.2f);
     return colours;
 }
 

@@ -26,6 +26,15 @@ App& app_of(GLFWwindow* window) { return *static_cast<App*>(glfwGetWindowUserPoi
 
 ImVec2 canvas_corner(const App& app) { return {app.px(look::tools), app.px(look::menu)}; }
 
+/// PROBEWARP_UI_SCALE wins over what the display says.
+float wanted_scale(GLFWmonitor* monitor) {
+    if (const char* text = std::getenv("PROBEWARP_UI_SCALE"))
+        if (const float value = std::strtof(text, nullptr); value >= 0.5f && value <= 4) return value;
+    float x = 1, y = 1;
+    if (monitor) glfwGetMonitorContentScale(monitor, &x, &y);
+    return std::clamp(x, 0.5f, 4.0f);
+}
+
 /// The pointer in canvas pixels, with the keys that are held.
 PointerEvent pointer_event(const App& app, Button button = Button::left) {
     double x = 0, y = 0;
@@ -56,7 +65,8 @@ void on_move(GLFWwindow* window, double, double) {
     App& app = app_of(window);
     app.wake();
     const PointerEvent event = pointer_event(app);
-    if (app.editor.gesture || on_canvas(app, event.at))
+    const bool drags = app.editor.gesture && app.editor.gesture->kind != Gesture::Kind::field;
+    if (drags || on_canvas(app, event.at))
         move(app.editor, event);
     else {
         app.editor.pointer.reset();
@@ -185,15 +195,6 @@ void on_drop(GLFWwindow* window, int count, const char** paths) {
 void on_damage(GLFWwindow* window) { app_of(window).wake(); }
 void on_size(GLFWwindow* window, int, int) { app_of(window).wake(); }
 
-/// PROBEWARP_UI_SCALE wins over what the display says.
-float wanted_scale(GLFWwindow* window) {
-    if (const char* text = std::getenv("PROBEWARP_UI_SCALE"))
-        if (const float value = std::strtof(text, nullptr); value >= 0.5f && value <= 4) return value;
-    float x = 1, y = 1;
-    glfwGetWindowContentScale(window, &x, &y);
-    return std::clamp(x, 0.5f, 4.0f);
-}
-
 void rebuild_fonts(App& app) {
     app.fonts = load_fonts(app.scale);
     ImGui::GetIO().FontDefault = app.fonts.text;
@@ -202,9 +203,9 @@ void rebuild_fonts(App& app) {
     apply_theme(app.theme, app.scale);
 }
 
-void on_content_scale(GLFWwindow* window, float, float) {
+void on_content_scale(GLFWwindow* window, float scale, float) {
     App& app = app_of(window);
-    app.scale = wanted_scale(window);
+    if (!std::getenv("PROBEWARP_UI_SCALE")) app.scale = std::clamp(scale, 0.5f, 4.0f);
     app.fonts = {};  // rasterised anew before the next frame
     app.wake();
 }
@@ -224,13 +225,20 @@ struct Glfw {
     Glfw& operator=(const Glfw&) = delete;
 };
 
-GLFWwindow* open_window() {
+/// 1280 x 800 at scale 1, or what the monitor has room for.
+ImVec2 window_size(GLFWmonitor* monitor, float scale) {
+    int x = 0, y = 0, width = 1280, height = 800;
+    if (monitor) glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+    return {std::min(1280 * scale, float(width)), std::min(800 * scale, float(height))};
+}
+
+GLFWwindow* open_window(float scale) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    GLFWwindow* window = glfwCreateWindow(1280, 800, "Probewarp", nullptr, nullptr);
+    const ImVec2 size = window_size(glfwGetPrimaryMonitor(), scale);
+    GLFWwindow* window = glfwCreateWindow(int(size.x), int(size.y), "Probewarp", nullptr, nullptr);
     if (!window) {
         const char* why = nullptr;
         glfwGetError(&why);
@@ -342,11 +350,12 @@ void run(App& app) {
 
 int run_window(const std::string& path) {
     const Glfw glfw;
-    GLFWwindow* window = open_window();
+    const float scale = wanted_scale(glfwGetPrimaryMonitor());
+    GLFWwindow* window = open_window(scale);
     load_gl(&glfwGetProcAddress);
     App app;
     app.window = window;
-    app.scale = wanted_scale(window);
+    app.scale = scale;
     glfwSetWindowUserPointer(window, &app);
     app.renderer = std::make_unique<Renderer>();
     app.renderer_label = renderer_name();
