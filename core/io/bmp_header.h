@@ -36,7 +36,11 @@ inline void read_bmp_compression(Bytes bytes, BmpHeader& header) {
     // Either the header is long enough for the masks, or they follow it: in both cases they stand here.
     const std::size_t count = with_alpha || header.size >= 56 ? 4 : 3;
     if (bytes.size() < 54 + 4 * count) throw truncated("BMP");
-    for (std::size_t i = 0; i < count; ++i) header.masks[i] = le32(bytes, 54 + 4 * i);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t mask = header.masks[i] = le32(bytes, 54 + 4 * i);
+        const std::uint32_t lowest = mask & (~mask + 1);
+        if (((mask + lowest) & mask) != 0) throw damaged("BMP", "the bits of a colour do not stand together");
+    }
 }
 
 inline BmpHeader read_bmp_header(Bytes bytes) {

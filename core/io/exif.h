@@ -8,8 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "io/bytes.h"
-#include "model/image.h"
+#include "io/formats.h"
 
 namespace probewarp {
 
@@ -54,8 +53,7 @@ inline Exif parse_exif(Bytes marker) {
     const double unit = centimetres ? 100 : 1 / 0.0254;
     const double x = std::round(exif_rational(data.get(), EXIF_TAG_X_RESOLUTION) * unit);
     const double y = std::round(exif_rational(data.get(), EXIF_TAG_Y_RESOLUTION) * unit);
-    if (x >= 1 && y >= 1 && x < 4294967295.0 && y < 4294967295.0)
-        found.resolution = Resolution{std::uint32_t(x), std::uint32_t(y)};
+    if (is_resolution(x, y)) found.resolution = Resolution{std::uint32_t(x), std::uint32_t(y)};
     return found;
 }
 

@@ -52,7 +52,6 @@ std::string kind(mode_t mode) {
 
 void check_readable(const fs::path& path, const struct stat& status, std::size_t limit) {
     if (!S_ISREG(status.st_mode)) refuse(path, kind(status.st_mode) + "; expected a file");
-    if (status.st_size == 0) refuse(path, "is empty; expected a file with something in it");
     if (std::uintmax_t(status.st_size) > limit)
         refuse(path, "is " + std::to_string(status.st_size) + " bytes long; expected at most " +
                          std::to_string(limit));
@@ -103,7 +102,8 @@ struct Temporary {
 
     Temporary(const fs::path& target, mode_t mode) {
         // 200 bytes: with the dots and the random part the name stays within the 255 that file systems allow.
-        const std::string stem = "." + target.filename().native().substr(0, 200) + ".";
+        std::string stem(".");
+        stem.append(target.filename().native(), 0, 200).append(".");
         for (int tries = 0; tries < 100 && fd < 0; ++tries) {
             path = folder_of(target) / (stem + random_suffix());
             fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, mode);

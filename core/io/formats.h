@@ -45,6 +45,11 @@ inline constexpr std::size_t max_icc_bytes = std::size_t{4} << 20;
 /// nothing.
 std::vector<std::byte> rgb_profile(Bytes profile);
 
+/// Whether these pixels per metre can be meant, and fit into the 31 bits that PNG and BMP have for them.
+inline bool is_resolution(double x, double y) {
+    return x >= 1 && y >= 1 && x <= 2147483647 && y <= 2147483647;
+}
+
 /// 16-bit sample to the nearest 8-bit one.
 inline std::uint8_t to_8_bits(std::uint16_t v) { return std::uint8_t((v * 255u + 32767u) / 65535u); }
 

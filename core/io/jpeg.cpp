@@ -231,14 +231,14 @@ Image decode_jpeg(Bytes bytes) {
     decoder.run([&] { jpeg_start_decompress(&jpeg); });
 
     Image image = blank_image(jpeg.output_width, jpeg.output_height, 8);
+    const Exif exif = read_exif(jpeg);  // before the end of decoding takes the markers away
+    image.resolution = jfif_resolution(jpeg);
+    if (!image.resolution) image.resolution = exif.resolution;
     read_rows(decoder, samples_8(image));
     if (cmyk)
         cmyk_to_rgba(samples_8(image), jpeg.saw_Adobe_marker);
     else if (decoder.icc)
         image.icc = rgb_profile(std::as_bytes(std::span(decoder.icc, decoder.icc_bytes)));
-    const Exif exif = read_exif(jpeg);
-    image.resolution = jfif_resolution(jpeg);
-    if (!image.resolution) image.resolution = exif.resolution;
     apply_orientation(image, exif.orientation);
     return image;
 }

@@ -79,6 +79,14 @@ struct Survey {
     std::size_t idat_bytes = 0;
 };
 
+/// `ihdr`: what should be the IHDR chunk. Before libspng sees it, which would only say that some limit is
+/// exceeded.
+void check_dimensions(Bytes ihdr) {
+    if (!begins_with(ihdr.subspan(4), "IHDR") || ihdr.size() != chunk_overhead + 13)
+        throw damaged("PNG", "it does not start with IHDR");
+    check_image_size(be32(ihdr, 8), be32(ihdr, 12), u8(ihdr, 16) == 16 ? 16 : 8);
+}
+
 /// Walks the chunks by their lengths up to IEND. Throws where the file ends before.
 Survey survey(Bytes file) {
     Survey found;
@@ -89,8 +97,7 @@ Survey survey(Bytes file) {
         if (length > file.size() - at - chunk_overhead) throw truncated("PNG");
         const Bytes chunk = file.subspan(at, length + chunk_overhead);
         const Bytes type = chunk.subspan(4, 4);
-        if (at == signature_bytes && !(begins_with(type, "IHDR") && length == 13))
-            throw damaged("PNG", "it does not start with IHDR");
+        if (at == signature_bytes) check_dimensions(chunk);
         if (wanted(type)) found.parts.add(chunk);
         if (begins_with(type, "IDAT")) found.idat_bytes += length;
         if (begins_with(type, "IEND")) return found;
@@ -105,8 +112,7 @@ std::size_t raw_bytes(const spng_ihdr& ihdr) {
     return (std::size_t(ihdr.width) * bits + 7) / 8 * ihdr.height;
 }
 
-void check_header(const spng_ihdr& ihdr, std::size_t idat_bytes) {
-    check_image_size(ihdr.width, ihdr.height, ihdr.bit_depth == 16 ? 16 : 8);
+void check_plausible(const spng_ihdr& ihdr, std::size_t idat_bytes) {
     // Deflate cannot pack more than 1032 bytes into one.
     if (raw_bytes(ihdr) / 1032 > idat_bytes)
         throw damaged("PNG", "it holds too little data for " + std::to_string(ihdr.width) + " x " +
@@ -146,7 +152,8 @@ void read_extras(spng_ctx* spng, Image& image) {
     if (spng_get_iccp(spng, &iccp) == SPNG_OK)
         image.icc = rgb_profile(std::as_bytes(std::span(iccp.profile, iccp.profile_len)));
     spng_phys phys{};
-    if (spng_get_phys(spng, &phys) == SPNG_OK && phys.unit_specifier == 1 && phys.ppu_x > 0 && phys.ppu_y > 0)
+    if (spng_get_phys(spng, &phys) == SPNG_OK && phys.unit_specifier == 1 &&
+        is_resolution(phys.ppu_x, phys.ppu_y))
         image.resolution = Resolution{phys.ppu_x, phys.ppu_y};
 }
 
@@ -156,7 +163,7 @@ Image decode_png(Bytes bytes) {
     Survey found = survey(bytes);
     const Context context(0);
     const spng_ihdr ihdr = open_stream(context.spng, found.parts);
-    check_header(ihdr, found.idat_bytes);
+    check_plausible(ihdr, found.idat_bytes);
     if (ihdr.interlace_method && std::uint64_t(ihdr.width) * ihdr.height > 4'000'000)
         check_rows(survey(bytes).parts);
 
@@ -205,7 +212,7 @@ void set_extras(spng_ctx* spng, const Image& image, std::vector<std::byte>& icc)
         iccp.profile_len = icc.size();
         check_encoding(spng_set_iccp(spng, &iccp));
     }
-    if (image.resolution) {
+    if (image.resolution && is_resolution(image.resolution->x, image.resolution->y)) {
         spng_phys phys{image.resolution->x, image.resolution->y, 1};
         check_encoding(spng_set_phys(spng, &phys));
     }

@@ -63,6 +63,10 @@ std::vector<Probe> decode_probes_csv(std::string_view text, const Document& docu
         probe.now = middle + unit * glm::dvec2(x, -y);
         probe.angle = itheta - theta;  // theirs is anticlockwise
         probe.radius = unit * radius;
+        const double farthest = std::max({std::abs(probe.rest.x), std::abs(probe.rest.y), std::abs(probe.now.x),
+                                          std::abs(probe.now.y), probe.radius});
+        if (farthest > max_probe_coordinate || std::abs(probe.angle) > max_probe_angle || probe.radius < min_probe_radius)
+            throw Error(fmt::format("line {} is a probe too far away, turned too far, or with a radius out of range", line));
         grown.probes.push_back(probe);
         if (grown.probes.size() > max_rows) throw Error(fmt::format("line {} is one probe too many", line));
     }

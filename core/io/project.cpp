@@ -6,13 +6,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <initializer_list>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "io/file.h"
 #include "io/image_file.h"
+#include "io/printable.h"
 #include "io/zip_archive.h"
 
 namespace probewarp {
@@ -24,8 +24,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t max_json_bytes = std::size_t{16} << 20;
 constexpr int max_json_depth = 8;
 constexpr std::size_t max_probes = 10000;
-constexpr double farthest = 1e7;   // image pixels
-constexpr double most_turns = 1e6; // radians
 
 std::vector<std::byte> to_bytes(std::string_view text) {
     const auto bytes = std::as_bytes(std::span(text));
@@ -42,7 +40,7 @@ Json parse(std::span<const std::byte> bytes) {
         const auto level = std::size_t(depth);
         if (event == Json::parse_event_t::object_start) keys[level + 1].clear();
         if (event == Json::parse_event_t::key && !keys[level].insert(parsed.get<std::string>()).second)
-            throw Error(fmt::format("project.json has the field \"{}\" twice", parsed.get<std::string>().substr(0, 80)));
+            throw Error(fmt::format("project.json has the field \"{}\" twice", printable(parsed.get<std::string>().substr(0, 80))));
         return true;
     };
     const auto* first = reinterpret_cast<const char*>(bytes.data());
@@ -97,14 +95,14 @@ class Fields {
     glm::dvec2 point(const char* field) {
         const Json& value = take(field);
         if (!value.is_array() || value.size() != 2) throw wrong(field, "two numbers");
-        return {checked(value[0], field, -farthest, farthest), checked(value[1], field, -farthest, farthest)};
+        return {checked(value[0], field, -max_probe_coordinate, max_probe_coordinate), checked(value[1], field, -max_probe_coordinate, max_probe_coordinate)};
     }
     void finish() const {
         for (const auto& [key, value] : json_.items())
             if (!taken_.contains(key))
                 throw Error(fmt::format("project.json has the field \"{}\"{}, which this version does not know; it was "
                                         "written by a later version or by hand",
-                                        key.substr(0, 80), place_.empty() ? "" : " in " + place_));
+                                        printable(key.substr(0, 80)), place_.empty() ? "" : " in " + place_));
     }
 
   private:
@@ -142,17 +140,24 @@ Json to_json(const Probe& probe) {
 Probe probe_from(const Json& json, const std::string& place) {
     Fields fields(json, place);
     Probe probe;
-    probe.id = fields.whole("id", 1, std::numeric_limits<int>::max() - 1);
+    probe.id = fields.whole("id", 1, max_probe_id);
     probe.name = fields.text("name", 200);
     probe.colour = colour_from(fields);
     probe.rest = fields.point("rest");
     probe.now = fields.point("now");
-    probe.angle = fields.number("angle_radians", -most_turns, most_turns);
-    probe.radius = fields.number("radius", 1e-3, farthest);
+    probe.angle = fields.number("angle_radians", -max_probe_angle, max_probe_angle);
+    probe.radius = fields.number("radius", min_probe_radius, max_probe_coordinate);
     probe.locked = fields.yes("locked");
     probe.visible = fields.yes("visible");
     fields.finish();
     return probe;
+}
+
+/// A project holds names as one line of text, and a file's name may be anything.
+std::string one_line(std::string text) {
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
+    return text;
 }
 
 /// The place of the picture's bytes in the archive: "image" with its format's usual ending.
@@ -226,14 +231,16 @@ std::vector<std::byte> encode_project(const Document& document) {
     for (const Probe& probe : document.probes) probes.push_back(to_json(probe));
     const Picture& picture = *document.picture;
     const Json json{{"format", project_format},
-                    {"image", {{"file", image_member(picture)}, {"name", picture.name}}},
+                    {"image", {{"file", image_member(picture)}, {"name", one_line(picture.name)}}},
                     {"mesh", {{"cells", document.cells}}},
                     {"weights", document.weights},
                     {"blend", document.blend},
                     {"probes", std::move(probes)}};
+    const std::vector<std::byte> text = to_bytes(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    parse_project(text);  // a save that would not open again must fail now, while the document is still there
     // The picture is stored as it is: its own format has compressed it already, or it is quick to write.
     const ZipMember members[] = {{"mimetype", to_bytes(project_mimetype), true},
-                                 {"project.json", to_bytes(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"), false},
+                                 {"project.json", text, false},
                                  {image_member(picture), picture.original, true}};
     return write_zip(members);
 }
@@ -242,7 +249,7 @@ Document decode_project(std::span<const std::byte> bytes, const std::string& nam
     try {
         return decode(bytes);
     } catch (const Error& error) {
-        throw Error(fmt::format("{}: {}", name, error.what()));
+        throw Error(fmt::format("{}: {}", printable(name), printable(error.what())));  // names inside may hold anything
     }
 }
 
@@ -253,9 +260,7 @@ Document read_document(const std::filesystem::path& path) {
     if (is_project(bytes)) return decode_project(bytes, path.string());
     Document document;
     Picture picture = decode_picture(std::move(bytes), path.string());
-    picture.name = path.filename().string();
-    for (char& c : picture.name)  // a project holds the name as one line of text
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
+    picture.name = one_line(path.filename().string());
     document.picture = std::make_shared<const Picture>(std::move(picture));
     return document;
 }

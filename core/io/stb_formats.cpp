@@ -90,7 +90,7 @@ Image decode_bmp(Bytes bytes) {
 
     const std::vector<std::byte> plain = plain_bmp_header(bytes, header);
     Image image = decode_stb("BMP", {plain, bytes.subspan(header.pixels, all_bytes)});
-    if (header.resolution.x > 0 && header.resolution.y > 0) image.resolution = header.resolution;
+    if (is_resolution(header.resolution.x, header.resolution.y)) image.resolution = header.resolution;
     return image;
 }
 
@@ -193,7 +193,7 @@ std::vector<std::byte> encode_stb(StbWriter write, const Image& image) {
 
 std::vector<std::byte> encode_bmp(const Image& image, const EncodeOptions&) {
     std::vector<std::byte> out = encode_stb(stbi_write_bmp_to_func, image);
-    if (image.resolution)
+    if (image.resolution && is_resolution(image.resolution->x, image.resolution->y))
         for (std::size_t i = 0; i < 4; ++i) {
             out[38 + i] = std::byte(image.resolution->x >> (8 * i) & 255);
             out[42 + i] = std::byte(image.resolution->y >> (8 * i) & 255);

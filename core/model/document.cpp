@@ -27,7 +27,8 @@ Probe* find_probe(Document& document, int id) {
 Probe new_probe(const Document& document, glm::dvec2 rest) {
     Probe probe;
     for (const Probe& other : document.probes) probe.id = std::max(probe.id, other.id);
-    ++probe.id;
+    if (++probe.id > max_probe_id)  // a file may have begun near the end
+        for (probe.id = 1; find_probe(document, probe.id);) ++probe.id;
     probe.name = fmt::format("Probe {}", probe.id);
     probe.colour = probe_colour(probe.id - 1);
     probe.rest = probe.now = rest;

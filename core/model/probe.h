@@ -16,6 +16,12 @@ struct Colour {
     friend bool operator==(const Colour&, const Colour&) = default;
 };
 
+/// What a project file holds. Whatever reads probes keeps to it, so that what was opened can be saved and opened again.
+inline constexpr double max_probe_coordinate = 1e7;    // image pixels, of rest and now and the radius
+inline constexpr double max_probe_angle = 1e6;         // radians
+inline constexpr double min_probe_radius = 1e-3;       // image pixels
+inline constexpr int max_probe_id = 2'000'000'000;
+
 struct Probe {
     int id = 0;  ///< unique in its document, > 0
     std::string name;

@@ -9,17 +9,18 @@ namespace probewarp {
 
 void inverse_distance_weights(std::span<const Probe> probes, glm::dvec2 vertex, std::span<float> weights) {
     assert(weights.size() == probes.size());
-    // The probe that weighs most has the smallest ratio distance^2 / radius^2; dividing by it keeps every weight in
-    // [0, 1] however near the probe is.
+    // distance^2 / radius^2; the radius divides before squaring, or tiny radii would give 0 / 0.
+    const auto ratio = [vertex](const Probe& probe) {
+        const glm::dvec2 d = (vertex - probe.rest) / probe.radius;
+        return d.x * d.x + d.y * d.y;
+    };
+    // The probe that weighs most has the smallest ratio; dividing by it keeps every weight in [0, 1] however near
+    // the probe is.
     double least = std::numeric_limits<double>::infinity();
-    for (const Probe& probe : probes) {
-        const glm::dvec2 d = vertex - probe.rest;
-        least = std::min(least, (d.x * d.x + d.y * d.y) / (probe.radius * probe.radius));
-    }
+    for (const Probe& probe : probes) least = std::min(least, ratio(probe));
     for (std::size_t i = 0; i < probes.size(); ++i) {
-        const glm::dvec2 d = vertex - probes[i].rest;
-        const double ratio = (d.x * d.x + d.y * d.y) / (probes[i].radius * probes[i].radius);
-        weights[i] = ratio == least ? 1.0f : float(least / ratio);
+        const double own = ratio(probes[i]);
+        weights[i] = own == least ? 1.0f : float(least / own);
     }
 }
 

@@ -129,12 +129,11 @@ TEST_F(FileTest, WritesThroughSymbolicLinks) {
                 HasSubstr("Too many levels"));
 }
 
+// Never a device of the system: were the check gone, a test run by root would put a file in its place.
 TEST_F(FileTest, RefusesToWriteOverWhatIsNoFile) {
     EXPECT_THAT(
         error_of([&] { write_file(folder.path, bytes_of("x")); }),
         ::testing::AllOf(HasSubstr("cannot save " + folder.path.string()), HasSubstr("it is a folder")));
-    EXPECT_THAT(error_of([&] { write_file("/dev/null", bytes_of("x")); }), HasSubstr("it is a device"));
-    EXPECT_TRUE(fs::is_character_file("/dev/null"));
     EXPECT_THAT(error_of([&] { write_file(folder.path / "no" / "file", bytes_of("x")); }),
                 HasSubstr("No such file or directory"));
     EXPECT_THAT(error_of([&] { write_file("", bytes_of("x")); }), HasSubstr("it names no file"));

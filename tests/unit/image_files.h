@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <functional>
 #include <initializer_list>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -88,7 +89,7 @@ inline File deflate_bomb(std::size_t mebibytes) {
     stream.next_out = block.data();
     stream.avail_out = uInt(block.size());
     deflate(&stream, Z_FULL_FLUSH);
-    block.resize(block.size() - stream.avail_out);
+    block.erase(block.end() - stream.avail_out, block.end());
     deflateEnd(&stream);
 
     File file = bytes({0x78, 0xDA});
@@ -235,6 +236,39 @@ inline File lzw(const std::vector<int>& indices) {
     }
     put(257);
     if (count > 0) data.push_back(std::byte(bits & 255));
+    return data;
+}
+
+/// LZW as GIF's writers do it, 8-bit literals, codes of 9 to 12 bits. Once the table is full it stays as it
+/// is.
+inline File lzw_compressed(const std::vector<int>& indices) {
+    File data;
+    std::uint32_t bits = 0;
+    int count = 0, width = 9, next = 258;
+    const auto put = [&](int code) {
+        bits |= std::uint32_t(code) << count;
+        for (count += width; count >= 8; count -= 8, bits >>= 8) data.push_back(std::byte(bits & 255));
+    };
+    std::map<std::pair<int, int>, int> table;  // a string's code and one more index: the code of both
+    put(256);
+    int string = indices[0];
+    for (std::size_t i = 1; i < indices.size(); ++i) {
+        const auto longer = table.find({string, indices[i]});
+        if (longer != table.end()) {
+            string = longer->second;
+            continue;
+        }
+        put(string);
+        if (next < 4096) {
+            if (next == 1 << width) ++width;
+            table[{string, indices[i]}] = next++;
+        }
+        string = indices[i];
+    }
+    put(string);
+    if (next < 4096 && next == 1 << width) ++width;
+    put(257);
+    data.push_back(std::byte(bits & 255));
     return data;
 }
 

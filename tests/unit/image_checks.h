@@ -1,0 +1,70 @@
+// What the tests of picture files ask of a file: its pixels, its error, and that no part of it passes for the
+// whole.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "image_files.h"
+#include "io/image_file.h"
+
+namespace probewarp::testing {
+
+using Rgba = std::array<int, 4>;
+
+inline std::string error_of(const File& file, const std::string& name) {
+    try {
+        decode_picture(file, name);
+        return "";
+    } catch (const Error& error) {
+        return error.what();
+    }
+}
+
+inline Image decode(const File& file, const std::string& name = "picture") {
+    return decode_picture(file, name).image;
+}
+
+inline File encode(const Image& image, std::string_view format, const EncodeOptions& options = {}) {
+    return find_image_format(format)->encode(image, options);
+}
+
+/// Row after row; every pixel as RGBA.
+inline std::vector<Rgba> pixels(const Image& image) {
+    std::vector<Rgba> all;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) all.push_back(pixel(image, x, y));
+    return all;
+}
+
+/// Every prefix of the file is refused as truncated, or, while it is too short to be recognised, as no
+/// picture.
+inline void expect_each_cut_refused(const File& file, const std::string& name) {
+    ASSERT_EQ(error_of(file, name), "");
+    for (std::size_t size = 0; size < file.size(); ++size) {
+        const File cut(file.begin(), file.begin() + std::ptrdiff_t(size));
+        ASSERT_THAT(error_of(cut, name),
+                    ::testing::AnyOf(::testing::HasSubstr(name + ": is truncated; expected a whole "),
+                                     ::testing::HasSubstr("not a picture that can be read")))
+            << "cut to " << size << " of " << file.size() << " bytes";
+        // 18: the header of TGA, the last to be recognised.
+        if (size >= 18) {
+            ASSERT_THAT(error_of(cut, name), ::testing::HasSubstr("truncated")) << size;
+        }
+    }
+}
+
+/// Refused with these words, in less than the two seconds that a bad file may take.
+inline void expect_refused(const File& file, const std::string& name, const std::string& words) {
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_THAT(error_of(file, name), ::testing::HasSubstr(words));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2)) << words;
+}
+
+}  // namespace probewarp::testing

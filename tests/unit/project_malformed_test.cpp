@@ -1,0 +1,325 @@
+// Projects that are not what they should be: each is refused with one line that names the file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "io/file.h"
+#include "io/image_file.h"
+#include "io/project.h"
+#include "pictures.h"
+#include "raw_zip.h"
+
+namespace probewarp {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::Bytes;
+using testing::deflated;
+using testing::error_of;
+using testing::raw_zip;
+using testing::RawMember;
+using testing::to_bytes;
+
+const std::string good_json = R"({"format": 1, "image": {"file": "image.png", "name": "a.png"},
+    "mesh": {"cells": 10}, "weights": "inverse-distance", "blend": "dlb",
+    "probes": [{"id": 3, "name": "P", "colour": "#e69f00", "rest": [1.5, 2], "now": [3, 4],
+                "angle_radians": 0.25, "radius": 10, "locked": false, "visible": true}]})";
+
+Bytes one_pixel() {
+    Image image;
+    image.width = image.height = 1;
+    image.rgba = std::vector<std::uint8_t>{1, 2, 3, 255};
+    return find_image_format("png")->encode(image, {});
+}
+
+std::vector<RawMember> good_members() {
+    return {{"mimetype", to_bytes(project_mimetype)}, {"project.json", to_bytes(good_json)}, {"image.png", one_pixel()}};
+}
+
+/// What opening says, "" where it opens. Whatever it says is one line that begins with the file's name.
+std::string refusal(const Bytes& bytes) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::string error = error_of([&] { decode_project(bytes, "folder/bad.probewarp"); });
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2)) << error;
+    if (error.empty()) return error;
+    EXPECT_TRUE(error.starts_with("folder/bad.probewarp: ")) << error;
+    for (const char c : error) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << error;
+    return error;
+}
+
+std::string refusal(const std::vector<RawMember>& members) { return refusal(raw_zip(members)); }
+
+/// With another text in the place of `from`, which must be there.
+std::string refusal_with(const std::string& from, const std::string& to) {
+    std::string json = good_json;
+    const auto at = json.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    if (at == std::string::npos) return "";
+    auto members = good_members();
+    members[1].bytes = to_bytes(json.replace(at, from.size(), to));
+    return refusal(members);
+}
+
+TEST(MalformedProject, TheGoodOneOpens) {
+    EXPECT_EQ(refusal(good_members()), "");
+    const Document document = decode_project(raw_zip(good_members()), "x");
+    ASSERT_EQ(document.probes.size(), 1u);
+    EXPECT_EQ(document.probes[0].now, glm::dvec2(3, 4));
+    EXPECT_EQ(document.probes[0].id, 3);
+    EXPECT_EQ(document.cells, 10);
+    EXPECT_EQ(refusal_with("[1.5, 2]", "[-1e7, 1e7]"), "");
+    EXPECT_EQ(refusal_with("\"id\": 3", "\"id\": 2000000000"), "");
+}
+
+TEST(MalformedProject, MissingMembers) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        auto members = good_members();
+        const std::string name = members[i].name;
+        members.erase(members.begin() + std::ptrdiff_t(i));
+        EXPECT_THAT(refusal(members), HasSubstr(name)) << name;
+    }
+    EXPECT_NE(refusal(std::vector<RawMember>{}), "");
+}
+
+TEST(MalformedProject, AWrongMimetype) {
+    auto members = good_members();
+    members[0].bytes = to_bytes("application/x-probewarp2");
+    EXPECT_THAT(refusal(members), HasSubstr("is not a Probewarp project"));
+    members[0].bytes = to_bytes("application/x-probewarp\n");
+    EXPECT_THAT(refusal(members), HasSubstr("is not a Probewarp project"));
+    members = good_members();
+    std::swap(members[0], members[1]);  // not the first
+    EXPECT_THAT(refusal(members), HasSubstr("is not a Probewarp project"));
+}
+
+TEST(MalformedProject, DoubledMembers) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        auto members = good_members();
+        members.push_back(members[i]);
+        EXPECT_NE(refusal(members), "") << members[i].name;
+    }
+}
+
+TEST(MalformedProject, NamesThatPointOut) {
+    for (const std::string name :
+         {"../evil", "a/../../evil", "..", ".", "/etc/passwd", "a\\b", "..\\evil", "C:evil", "a//b", "a/./b", "folder/",
+          "new\nline", ""}) {
+        auto members = good_members();
+        members.push_back({name, to_bytes("x")});
+        EXPECT_NE(refusal(members), "") << name;
+        if (!name.empty()) {
+            EXPECT_THAT(refusal(members), HasSubstr("points out of the archive")) << name;
+        }
+    }
+}
+
+TEST(MalformedProject, MembersAndFieldsOfALaterVersion) {
+    auto members = good_members();
+    members.push_back({"layers.json", to_bytes("{}")});
+    EXPECT_THAT(refusal(members), HasSubstr("has a member layers.json that this version does not know"));
+    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"sliders\": []"), HasSubstr("the field \"sliders\""));
+    EXPECT_THAT(refusal_with("\"cells\": 10", "\"cells\": 10, \"kind\": 1"), HasSubstr("\"kind\" in mesh"));
+    EXPECT_THAT(refusal_with("\"name\": \"a.png\"", "\"name\": \"a.png\", \"x\": 1"), HasSubstr("\"x\" in image"));
+    EXPECT_THAT(refusal_with("\"id\": 3", "\"id\": 3, \"pin\": 1"), HasSubstr("\"pin\" in probes[0]"));
+    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"\\n\\u001b\\u0000\": 1"), HasSubstr("\"???\""));
+}
+
+TEST(MalformedProject, MissingFields) {
+    for (const char* field : {"format", "image", "mesh", "weights", "blend", "probes", "file", "cells", "id", "colour",
+                              "rest", "now", "angle_radians", "radius", "locked", "visible"})
+        EXPECT_THAT(refusal_with('"' + std::string(field) + '"', "\"other\""), HasSubstr("project.json")) << field;
+}
+
+TEST(MalformedProject, WrongValuesNameTheirField) {
+    const struct {
+        const char *from, *to, *said;
+    } cases[] = {
+        {"\"cells\": 10", "\"cells\": 0", "mesh.cells"},
+        {"\"cells\": 10", "\"cells\": -5", "mesh.cells"},
+        {"\"cells\": 10", "\"cells\": 1001", "mesh.cells"},
+        {"\"cells\": 10", "\"cells\": 4294967306", "mesh.cells"},            // 2^32 + 10
+        {"\"cells\": 10", "\"cells\": 18446744073709551615", "mesh.cells"},  // 2^64 - 1
+        {"\"cells\": 10", "\"cells\": 10.5", "mesh.cells"},
+        {"\"cells\": 10", "\"cells\": \"10\"", "mesh.cells"},
+        {"\"cells\": 10", "\"cells\": null", "mesh.cells"},
+        {"{\"cells\": 10}", "[]", "mesh"},
+        {"\"id\": 3", "\"id\": 0", "probes[0].id"},
+        {"\"id\": 3", "\"id\": -1", "probes[0].id"},
+        {"\"id\": 3", "\"id\": 2000000001", "probes[0].id"},
+        {"\"id\": 3", "\"id\": true", "probes[0].id"},
+        {"\"name\": \"P\"", "\"name\": 7", "probes[0].name"},
+        {"\"name\": \"P\"", "\"name\": \"a\\nb\"", "probes[0].name"},
+        {"\"name\": \"a.png\"", "\"name\": \"a\\u0000b\"", "image.name"},
+        {"#e69f00", "#E69F00", "probes[0].colour"},
+        {"#e69f00", "#e69f0", "probes[0].colour"},
+        {"#e69f00", "#e69f0g", "probes[0].colour"},
+        {"#e69f00", "e69f000", "probes[0].colour"},
+        {"[1.5, 2]", "[1.5]", "probes[0].rest"},
+        {"[1.5, 2]", "[1.5, 2, 3]", "probes[0].rest"},
+        {"[1.5, 2]", "[1.5, \"2\"]", "probes[0].rest"},
+        {"[1.5, 2]", "{\"x\": 1}", "probes[0].rest"},
+        {"[3, 4]", "[3, 1.1e7]", "probes[0].now"},
+        {"0.25", "1.1e6", "probes[0].angle_radians"},
+        {"0.25", "-1.1e6", "probes[0].angle_radians"},
+        {"\"radius\": 10", "\"radius\": 0", "probes[0].radius"},
+        {"\"radius\": 10", "\"radius\": -10", "probes[0].radius"},
+        {"\"radius\": 10", "\"radius\": 1e-300", "probes[0].radius"},
+        {"\"locked\": false", "\"locked\": 0", "probes[0].locked"},
+        {"\"visible\": true", "\"visible\": \"yes\"", "probes[0].visible"},
+        {"inverse-distance", "magic", "weights"},
+        {"\"dlb\"", "\"lbs\"", "blend"},
+        {"\"dlb\"", "null", "blend"},
+        {"\"file\": \"image.png\"", "\"file\": 3", "image.file"},
+        {"[{\"id\"", "[7, {\"id\"", "probes[0]"},
+        {"\"probes\": [", "\"probes\": {\"a\": [", "JSON"},
+    };
+    for (const auto& c : cases) EXPECT_THAT(refusal_with(c.from, c.to), HasSubstr(c.said)) << c.to;
+    EXPECT_THAT(refusal_with("\"P\"", '"' + std::string(201, 'x') + '"'), HasSubstr("probes[0].name"));
+}
+
+TEST(MalformedProject, NumbersThatAreNone) {
+    for (const char* number : {"NaN", "nan", "Infinity", "-Infinity", "1e999", "-1e999", "0x10", "1.", ".5", "01", "+1", "1e"})
+        EXPECT_NE(refusal_with("0.25", number), "") << number;
+    EXPECT_THAT(refusal_with("0.25", "1e999"), HasSubstr("number that is too large"));
+    EXPECT_THAT(refusal_with("0.25", "NaN"), HasSubstr("not valid JSON"));
+}
+
+TEST(MalformedProject, AnotherFormat) {
+    for (const char* format : {"0", "2", "-1", "1.0", "\"1\"", "null", "18446744073709551617", "4294967297"})
+        EXPECT_THAT(refusal_with("\"format\": 1", std::string("\"format\": ") + format), HasSubstr("reads format 1"))
+            << format;
+}
+
+TEST(MalformedProject, FieldsAndIdsThatStandTwice) {
+    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"format\": 1"), HasSubstr("the field \"format\" twice"));
+    EXPECT_THAT(refusal_with("\"radius\": 10", "\"radius\": 10, \"radius\": 11"), HasSubstr("the field \"radius\" twice"));
+    EXPECT_THAT(refusal_with("\"format\": 1", "\"a\\nb\": 1, \"a\\nb\": 1"), HasSubstr("\"a?b\" twice"));
+    const auto first = good_json.find("{\"id\""), end = good_json.find("]}", first);
+    const std::string probe = good_json.substr(first, end - first);
+    EXPECT_THAT(refusal_with(probe, probe + ", " + probe), HasSubstr("probes[1].id stands twice"));
+    std::string other = probe;
+    other.replace(other.find('3'), 1, "4");
+    EXPECT_EQ(refusal_with(probe, probe + ", " + other), "");  // the same fields in two probes are no double
+}
+
+TEST(MalformedProject, JsonThatIsNone) {
+    for (const std::string json : {"", "{", "[]", "7", "null", "\"x\"", "{}", "{\"format\": 1}", "{} {}", "\xff\xfe{}", "{'a': 1}"}) {
+        auto members = good_members();
+        members[1].bytes = to_bytes(json);
+        EXPECT_THAT(refusal(members), HasSubstr("project.json")) << json;
+    }
+    EXPECT_NE(refusal_with("\"P\"", "\"\xff\""), "");    // no UTF-8
+    EXPECT_NE(refusal_with("\"P\"", "\"\\ud800\""), "");  // half a pair
+}
+
+TEST(MalformedProject, DeepNesting) {
+    for (const char* bracket : {"[", "{\"a\":"}) {
+        std::string deep;
+        for (int i = 0; i < 200'000; ++i) deep += bracket;
+        auto members = good_members();
+        members[1].bytes = to_bytes(deep);
+        EXPECT_THAT(refusal(members), HasSubstr("nested deeper"));
+        EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": " + deep), HasSubstr("nested deeper"));
+    }
+}
+
+TEST(MalformedProject, MoreProbesOrWeightsThanFit) {
+    const auto first = good_json.find("{\"id\""), end = good_json.find("]}", first);
+    const std::string probe = good_json.substr(first, end - first);
+    const auto many = [&](int count) {
+        std::string list;
+        for (int i = 1; i <= count; ++i) {
+            std::string one = probe;
+            list += (i > 1 ? "," : "") + one.replace(one.find('3'), 1, std::to_string(i));
+        }
+        return list;
+    };
+    EXPECT_THAT(refusal_with(probe, many(10001)), HasSubstr("at most 10000 probes"));
+    auto members = good_members();
+    std::string json = good_json;
+    json.replace(json.find("10}"), 2, "1000");
+    members[1].bytes = to_bytes(json.replace(json.find(probe), probe.size(), many(67)));
+    EXPECT_THAT(refusal(members), HasSubstr("coarser mesh"));
+}
+
+TEST(MalformedProject, PicturesThatAreNone) {
+    auto members = good_members();
+    members[2].bytes = to_bytes("no picture");
+    EXPECT_THAT(refusal(members), HasSubstr("image.png: is not a picture"));
+    members[2].bytes = one_pixel();
+    members[2].bytes.resize(members[2].bytes.size() / 2);
+    EXPECT_THAT(refusal(members), HasSubstr("image.png: is truncated"));
+    for (const char* other : {"project.json", "mimetype", "../image.png", ""})
+        EXPECT_NE(refusal_with("\"file\": \"image.png\"", std::string("\"file\": \"") + other + "\""), "") << other;
+}
+
+TEST(MalformedProject, EncryptedMembers) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        auto members = good_members();
+        members[i].flags |= 1;
+        EXPECT_THAT(refusal(members), HasSubstr("encrypted member " + members[i].name));
+    }
+}
+
+TEST(MalformedProject, MembersThatLieAboutThemselves) {
+    auto members = good_members();
+    members[1].checksum = 0x12345678;
+    EXPECT_THAT(refusal(members), HasSubstr("damaged"));
+    members = good_members();
+    members[1].method = 99;  // no such compression
+    EXPECT_NE(refusal(members), "");
+    members = good_members();
+    members[1].size = std::uint32_t(members[1].bytes.size() + 1);  // stored, and not as long as it says
+    EXPECT_NE(refusal(members), "");
+}
+
+TEST(MalformedProject, Bombs) {
+    const Bytes zeros(std::size_t{20} << 20);
+    auto members = good_members();
+    members[1] = deflated("project.json", zeros, std::uint32_t(zeros.size()));  // 20 KiB for 20 MiB
+    EXPECT_THAT(refusal(members), HasSubstr("project.json is too long"));
+    members[1] = deflated("project.json", zeros, 100);  // says 100 bytes
+    EXPECT_THAT(refusal(members), HasSubstr("damaged"));
+    members[1] = deflated("project.json", zeros, std::uint32_t(max_file_bytes) + 1);  // says more than is read
+    EXPECT_THAT(refusal(members), HasSubstr("holds more than 256 MiB"));
+    members = good_members();
+    const RawMember packed = deflated("m", zeros, std::uint32_t(zeros.size()));
+    for (int i = 0; i < 40; ++i) {  // each within the limit, not all together
+        members.push_back(packed);
+        members.back().name += std::to_string(i);
+    }
+    EXPECT_THAT(refusal(members), HasSubstr("holds more than 256 MiB"));
+    members.clear();
+    for (int i = 0; i < 5000; ++i) members.push_back({"m" + std::to_string(i), {}});
+    EXPECT_THAT(refusal(members), HasSubstr("has 5000 members"));
+}
+
+TEST(MalformedProject, CutAtEveryByte) {
+    const Bytes whole = raw_zip(good_members());
+    const Bytes saved = encode_project(decode_project(whole, "x"));
+    for (const Bytes& bytes : {whole, saved})
+        for (std::size_t size = 0; size < bytes.size(); ++size)
+            EXPECT_NE(refusal(Bytes(bytes.begin(), bytes.begin() + std::ptrdiff_t(size))), "") << size;
+}
+
+TEST(MalformedProject, AnyByteWrong) {
+    const Bytes whole = raw_zip(good_members());
+    std::size_t opened = 0;
+    for (std::size_t i = 0; i < whole.size(); ++i)
+        for (const std::byte flip : {std::byte{1}, std::byte{0x80}, std::byte{0xff}}) {
+            Bytes bytes = whole;
+            bytes[i] ^= flip;
+            opened += refusal(bytes).empty();  // a document or an Error, never anything else
+        }
+    // The checksums see every change of the contents; what opens has another time, version or attribute.
+    EXPECT_LT(opened, 3 * 150u);
+}
+
+TEST(MalformedProject, TheFilesOwnNameIsMadePrintable) {
+    const std::string error = error_of([] { decode_project(to_bytes("PK"), "a\nb\x1b"); });
+    EXPECT_TRUE(error.starts_with("a?b?: ")) << error;
+}
+
+}  // namespace
+}  // namespace probewarp

@@ -1,0 +1,92 @@
+// ZIP archives made byte by byte, with lies where a test wants them. The writer under test has no part in it.
+#pragma once
+
+#include <zlib.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace probewarp::testing {
+
+using Bytes = std::vector<std::byte>;
+
+inline Bytes to_bytes(std::string_view text) {
+    const auto* first = reinterpret_cast<const std::byte*>(text.data());
+    return {first, first + text.size()};
+}
+
+struct RawMember {
+    std::string name;
+    Bytes bytes;                  ///< as they are in the archive: deflated where method is 8
+    unsigned flags = 1u << 11;    ///< the name is UTF-8; bit 0: encrypted
+    unsigned method = 0;          ///< 0 stored, 8 deflated
+    std::uint32_t size = 0;       ///< said to be this long; 0: as long as `bytes`
+    std::uint32_t checksum = 0;   ///< CRC-32; 0: of `bytes`
+};
+
+/// A member that inflates to `content`, and says so unless told to lie.
+inline RawMember deflated(const std::string& name, const Bytes& content, std::uint32_t size) {
+    z_stream stream{};
+    deflateInit2(&stream, 9, Z_DEFLATED, -15, 9, Z_DEFAULT_STRATEGY);
+    Bytes packed(deflateBound(&stream, uLong(content.size())));
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(content.data()));
+    stream.avail_in = uInt(content.size());
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+    stream.avail_out = uInt(packed.size());
+    deflate(&stream, Z_FINISH);
+    packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    const auto checksum = crc32(0, reinterpret_cast<const Bytef*>(content.data()), uInt(content.size()));
+    return {name, packed, 1u << 11, 8, size, std::uint32_t(checksum)};
+}
+
+inline Bytes raw_zip(const std::vector<RawMember>& members) {
+    const auto put = [](Bytes& out, int count, std::uint64_t value) {
+        for (int i = 0; i < count; ++i) out.push_back(std::byte(value >> (8 * i) & 255));
+    };
+    const auto put_text = [](Bytes& out, std::string_view text) {
+        for (const char c : text) out.push_back(std::byte(c));
+    };
+    Bytes archive, directory;
+    for (const RawMember& m : members) {
+        const std::size_t offset = archive.size();
+        const auto crc = m.checksum ? m.checksum
+                                    : crc32(0, reinterpret_cast<const Bytef*>(m.bytes.data()), uInt(m.bytes.size()));
+        const auto put_common = [&](Bytes& out) {
+            put(out, 2, m.flags);
+            put(out, 2, m.method);
+            put(out, 4, 0x00210000);  // midnight, the first of 1980
+            put(out, 4, crc);
+            put(out, 4, m.bytes.size());
+            put(out, 4, m.size ? m.size : m.bytes.size());
+            put(out, 2, m.name.size());
+            put(out, 2, 0);  // no extra field
+        };
+        put(archive, 4, 0x04034b50);
+        put(archive, 2, 20);
+        put_common(archive);
+        put_text(archive, m.name);
+        archive.insert(archive.end(), m.bytes.begin(), m.bytes.end());
+        put(directory, 4, 0x02014b50);
+        put(directory, 4, 20 | 20 << 16);
+        put_common(directory);
+        put(directory, 6, 0);  // no comment, disk 0, no internal attributes
+        put(directory, 4, 0);  // no external ones
+        put(directory, 4, offset);
+        put_text(directory, m.name);
+    }
+    const std::size_t start = archive.size();
+    archive.insert(archive.end(), directory.begin(), directory.end());
+    put(archive, 4, 0x06054b50);
+    put(archive, 4, 0);
+    put(archive, 2, members.size());
+    put(archive, 2, members.size());
+    put(archive, 4, directory.size());
+    put(archive, 4, start);
+    put(archive, 2, 0);
+    return archive;
+}
+
+}  // namespace probewarp::testing
