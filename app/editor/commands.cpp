@@ -20,7 +20,9 @@ std::string_view needs_unlocked(const Editor& e) {
 }
 std::string_view needs_pose(const Editor& e) {
     const auto& probes = e.document.probes;
-    return std::all_of(probes.begin(), probes.end(), at_rest) ? "No probe has moved" : "";
+    if (std::all_of(probes.begin(), probes.end(), at_rest)) return "No probe has moved";
+    const auto stays = [](const Probe& probe) { return probe.locked || at_rest(probe); };
+    return std::all_of(probes.begin(), probes.end(), stays) ? "Every probe that has moved is locked" : "";
 }
 std::string_view needs_undo(const Editor& e) { return e.history.at > 0 ? "" : "There is nothing to undo"; }
 std::string_view needs_redo(const Editor& e) {
@@ -49,9 +51,7 @@ void duplicate_probe(Editor& editor) {
     copy.now = original.now + glm::dvec2(aside, 0);
     copy.angle = original.angle;
     copy.radius = original.radius;
-    editor.document.probes.push_back(copy);
-    editor.selected = copy.id;
-    commit(editor, "Duplicate " + original.name);
+    if (add_probe(editor, copy)) commit(editor, "Duplicate " + original.name);
 }
 
 void put_to_rest(Probe& probe) {
@@ -111,12 +111,7 @@ constexpr Command all[] = {
     {"Help", "About Probewarp", {}, nullptr, &ask<Request::about>},
 };
 
-/// Second keys of commands above.
-struct Alias {
-    Shortcut key;
-    std::string_view label;
-};
-constexpr Alias aliases[] = {{{'Y', true}, "Redo"}, {{key_backspace}, "Delete"}, {{'0'}, "Fit"}};
+constexpr Alias second_keys[] = {{{'Y', true}, "Redo"}, {{key_backspace}, "Delete"}, {{'0'}, "Fit"}};
 
 void nudge(Editor& editor, glm::dvec2 way) {
     Probe* probe = selected_probe(editor);
@@ -135,6 +130,7 @@ std::string to_text(const Shortcut& shortcut) {
 }
 
 std::span<const Command> commands() { return all; }
+std::span<const Alias> aliases() { return second_keys; }
 
 const Command& find_command(std::string_view label) {
     const auto found = std::find_if(std::begin(all), std::end(all), [&](const Command& c) { return c.label == label; });
@@ -161,7 +157,7 @@ bool press_key(Editor& editor, const Shortcut& key) {
             run(editor, command);
             return true;
         }
-    for (const Alias& alias : aliases)
+    for (const Alias& alias : second_keys)
         if (alias.key == key) {
             run(editor, find_command(alias.label));
             return true;

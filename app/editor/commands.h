@@ -35,6 +35,14 @@ struct Command {
 
 /// In the menus' order.
 std::span<const Command> commands();
+
+/// A second key of a command.
+struct Alias {
+    Shortcut key;
+    std::string_view label;  ///< the command's
+};
+std::span<const Alias> aliases();
+
 /// Further keys for commands of the table, and keys without a menu: nudging with the arrows, Escape.
 /// Returns whether the key meant something.
 bool press_key(Editor& editor, const Shortcut& key);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "editor/tools.h"
+#include "model/error.h"
 
 namespace probewarp {
 
@@ -73,14 +75,28 @@ int put_probe(Editor& editor, glm::dvec2 at) {
     refresh(editor);
     const glm::dvec2 point = to_image(editor.view, at);
     const auto pose = pose_at(editor.deformation, point);
-    if (!pose) return 0;
+    if (!pose) {
+        editor.notice = "There is no picture there to put a probe on.";
+        return 0;
+    }
     Probe probe = new_probe(editor.document, pose->rest);
     probe.now = point;
     probe.angle = pose->angle;
     if (editor.document.probes.empty()) probe.now = probe.rest;  // nothing is deformed yet: exactly at rest
-    editor.document.probes.push_back(probe);
-    editor.selected = probe.id;
-    return probe.id;
+    return add_probe(editor, probe) ? probe.id : 0;
+}
+
+bool add_probe(Editor& editor, Probe probe) {
+    editor.document.probes.push_back(std::move(probe));
+    try {
+        check_size(editor.document);
+    } catch (const Error& error) {
+        editor.document.probes.pop_back();
+        editor.notice = std::string(error.what()) + ".";
+        return false;
+    }
+    editor.selected = editor.document.probes.back().id;
+    return true;
 }
 
 glm::dvec2 knob_position(const Editor& editor, const Probe& probe) {

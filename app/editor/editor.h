@@ -115,8 +115,10 @@ void begin_field(Editor& editor);
 void end_field(Editor& editor, std::string label);
 
 /// Puts a probe on the picture under the pointer, with the picture's own pose there, so that nothing jumps.
-/// Not committed. Returns its id, or 0 beside the picture.
+/// Not committed. Returns its id, or 0 where none can be put; the notice then says why.
 int put_probe(Editor& editor, glm::dvec2 at);
+/// Adds the probe and chooses it, not committed. False, with a notice, where the weights would be too many.
+bool add_probe(Editor& editor, Probe probe);
 
 /// What is under the pointer, the chosen probe first, then the topmost.
 Hit hit_test(const Editor& editor, glm::dvec2 at);

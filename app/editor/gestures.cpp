@@ -42,6 +42,7 @@ void drag(Editor& editor, const PointerEvent& event) {
         editor.fit_wanted = false;
         editor.view.corner = gesture.start_corner + event.at - gesture.pressed.at;
         gesture.last = event.at;
+        gesture.moved = gesture.moved || wandered(editor);
         return;
     }
     Probe* probe = find_probe(editor.document, gesture.probe);
@@ -82,7 +83,7 @@ void release(Editor& editor, const PointerEvent& event) {
     if (!editor.gesture || editor.gesture->kind == Gesture::Kind::field ||
         editor.gesture->pressed.button != event.button)
         return;
-    const bool pans = editor.gesture->kind == Gesture::Kind::pan, clicked = !wandered(editor);
+    const bool pans = editor.gesture->kind == Gesture::Kind::pan, clicked = !editor.gesture->moved;
     if (pans) {
         const bool by_tool = event.button == Button::left && !editor.gesture->pressed.space;
         editor.gesture.reset();
@@ -95,10 +96,7 @@ void release(Editor& editor, const PointerEvent& event) {
 void double_click(Editor& editor, const PointerEvent& event) {
     if (event.button != Button::left || event.space || !has_picture(editor)) return;
     if (editor.tool != &find_tool("select") || hit_test(editor, event.at).part != Part::none) return;
-    const int id = put_probe(editor, event.at);
-    if (id == 0)
-        editor.notice = "There is no picture there to put a probe on.";
-    else
+    if (const int id = put_probe(editor, event.at); id != 0)
         commit(editor, "Add " + find_probe(editor.document, id)->name);
 }
 

@@ -6,10 +6,7 @@ namespace probewarp {
 void press_add(Editor& editor, const PointerEvent& event) {
     Document before = editor.document;
     const int id = put_probe(editor, event.at);
-    if (id == 0) {
-        editor.notice = "There is no picture there to put a probe on.";
-        return;
-    }
+    if (id == 0) return;
     Gesture& gesture = begin(editor, Gesture::Kind::move, event, "Add " + find_probe(editor.document, id)->name);
     gesture.before = std::move(before);
     gesture.probe = id;

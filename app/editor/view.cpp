@@ -12,7 +12,8 @@ glm::dvec2 to_image(const CanvasView& view, glm::dvec2 canvas_point) {
 }
 
 void zoom_at(CanvasView& view, glm::dvec2 fixed, double factor) {
-    const double zoom = std::clamp(view.zoom * factor, least_zoom, most_zoom);
+    double zoom = std::clamp(view.zoom * factor, least_zoom, most_zoom);
+    if (std::abs(zoom - 1) < 1e-9) zoom = 1;  // pixel for pixel is exactly that, however the factors were rounded
     view.corner = fixed + (zoom / view.zoom) * (view.corner - fixed);
     view.zoom = zoom;
     if (zoom == 1) view.corner = {std::round(view.corner.x), std::round(view.corner.y)};
