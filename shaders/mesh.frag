@@ -18,8 +18,8 @@ const float least_weight = 1.0 / 1099511627776.0;
 // Vertices are known to about this (float, pictures up to 32768 pixels): nearer a pixel's centre is on it.
 const float on_centre = 1.0 / 512.0;
 
-vec4 texel(ivec2 at, int level) {
-    vec4 colour = texelFetch(picture, clamp(at, ivec2(0), textureSize(picture, level) - 1), level);
+vec4 texel(int x, int y, int level) {
+    vec4 colour = texelFetch(picture, ivec2(x, y), level);
     float weight = max(colour.a, least_weight);
     return vec4(colour.rgb * weight, weight);
 }
@@ -29,11 +29,11 @@ vec4 bilinear(vec2 at, int level) {
     vec2 place = at - 0.5;
     vec2 centre = round(place);
     place = mix(place, centre, lessThan(abs(place - centre), vec2(on_centre)));
-    ivec2 corner = ivec2(floor(place));
-    vec2 part = place - vec2(corner);
-    if (part == vec2(0.0)) return texel(corner, level);
-    return mix(mix(texel(corner, level), texel(corner + ivec2(1, 0), level), part.x),
-               mix(texel(corner + ivec2(0, 1), level), texel(corner + ivec2(1, 1), level), part.x), part.y);
+    vec2 corner = floor(place), part = place - corner;
+    ivec2 last = textureSize(picture, level) - 1;
+    ivec2 near = clamp(ivec2(corner), ivec2(0), last), far = clamp(ivec2(corner) + 1, ivec2(0), last);
+    return mix(mix(texel(near.x, near.y, level), texel(far.x, near.y, level), part.x),
+               mix(texel(near.x, far.y, level), texel(far.x, far.y, level), part.x), part.y);
 }
 
 void main() {

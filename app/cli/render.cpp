@@ -99,7 +99,7 @@ Image rendered(const Document& document, const Deformation& deformation, const E
     Progress progress(o.quiet);
     const auto context = open_context(o.backend);
     Renderer renderer;
-    renderer.set_picture(document.picture->image, smaller_levels(document.picture->image));
+    renderer.set_picture(upload_picture(document.picture->image));
     renderer.set_mesh(deformation.mesh);
     renderer.set_positions(deformation.now);
     ExportJob job(renderer, document, deformation, settings);

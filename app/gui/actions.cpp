@@ -34,19 +34,14 @@ fs::path usual_folder(const App& app) {
 void open_now(App& app, const fs::path& path) {
     start_job(app, fmt::format("Opening {}", path.filename().string()), true, [path]() -> std::function<void(App&)> {
         auto document = std::make_shared<Document>(read_document(path));
-        auto levels = std::make_shared<std::vector<Image>>(smaller_levels(document->picture->image));
         std::error_code ignored;
         const fs::path whole = fs::absolute(path, ignored);
-        return [document, levels, whole](App& a) {
-            // The picture is handed over first: where the driver cannot hold it, the open document stays.
+        return [document, whole](App& a) {
             try {
-                a.renderer->set_picture(document->picture->image, *levels);
+                check_texture_size(document->picture->image);
             } catch (const Error& error) {
-                say(a, Tone::error, fmt::format("{}: {}", whole.string(), error.what()));
-                a.uploaded.reset();
-                return;
+                return say(a, Tone::error, fmt::format("{}: {}", whole.string(), error.what()));
             }
-            a.uploaded = document->picture;
             const bool project = whole.extension() == project_extension;
             start(a.editor, std::move(*document), project ? whole : fs::path(), true);
         };
@@ -92,7 +87,6 @@ void open_dialog(App& app) {
 
 void new_document(App& app) {
     start(app.editor, {}, {}, true);
-    app.uploaded.reset();
 }
 
 void replace_picture_dialog(App& app) {
@@ -102,6 +96,11 @@ void replace_picture_dialog(App& app) {
                                [path]() -> std::function<void(App&)> {
                                    auto picture = std::make_shared<const Picture>(read_picture(path));
                                    return [picture](App& a) {
+                                       try {
+                                           check_texture_size(picture->image);
+                                       } catch (const Error& error) {
+                                           return say(a, Tone::error, error.what());
+                                       }
                                        replace_picture(a.editor.document, picture);
                                        commit(a.editor, "Replace picture");
                                        a.editor.fit_wanted = true;

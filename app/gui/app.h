@@ -23,6 +23,7 @@ namespace probewarp {
 
 /// What the canvas texture was last drawn from: it is drawn anew only when something differs.
 struct Shown {
+    PicturePtr picture;
     unsigned long mesh_version = 0, version = 0;
     CanvasView view;
     glm::ivec2 size{0};
@@ -61,7 +62,6 @@ struct App {
     float scale = 1;
     Shown shown;
     PicturePtr uploaded;         ///< the picture that the renderer holds
-    std::vector<Image> levels;   ///< mipmaps that came with an opened picture, until they are uploaded
     double deform_milliseconds = 0;
 
     Jobs jobs;

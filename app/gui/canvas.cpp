@@ -14,14 +14,9 @@ namespace probewarp {
 
 namespace {
 
-/// Brings the renderer up to date with the document. Where a driver refuses the picture, that is said once.
+/// Brings the renderer up to date with the document.
 void update_renderer(App& app) {
     Editor& editor = app.editor;
-    if (app.uploaded != editor.document.picture) {
-        app.uploaded = editor.document.picture;
-        const Image& image = editor.document.picture->image;
-        app.renderer->set_picture(image, smaller_levels(image));
-    }
     using Clock = std::chrono::steady_clock;
     const auto before = Clock::now();
     const unsigned long version = editor.deformation.version;
@@ -36,10 +31,11 @@ bool same(const CanvasView& a, const CanvasView& b) { return a.corner == b.corne
 
 void update_texture(App& app, glm::ivec2 size) {
     if (app.jobs.exporting) return;  // the renderer is busy; the canvas keeps its last picture
+    if (app.uploaded != app.editor.document.picture) return prepare_picture(app, app.editor.document.picture);
     update_renderer(app);
     const Editor& editor = app.editor;
     Shown& shown = app.shown;
-    if (shown.version == editor.deformation.version && shown.mesh_version == editor.deformation.mesh_version &&
+    if (shown.picture == app.uploaded && shown.version == editor.deformation.version && shown.mesh_version == editor.deformation.mesh_version &&
         same(shown.view, editor.view) && shown.size == size && shown.mesh == editor.show_mesh &&
         shown.light == app.theme.is_light)
         return;
@@ -50,6 +46,7 @@ void update_texture(App& app, glm::ivec2 size) {
     view.height = size.y;
     app.renderer->draw(view, 1);
     shown.texture = app.renderer->display(view, display_colours(app.theme), double(app.px(12)), editor.show_mesh);
+    shown.picture = app.uploaded;
     shown.mesh_version = editor.deformation.mesh_version;
     shown.version = editor.deformation.version;
     shown.view = editor.view;
@@ -172,7 +169,7 @@ void draw_canvas(App& app, float left, float top, float width, float height) {
     }
     update_texture(app, {int(width), int(height)});
     ImDrawList* list = ImGui::GetWindowDrawList();
-    if (app.shown.texture != 0)
+    if (app.shown.texture != 0 && app.shown.picture == editor.document.picture)
         list->AddImage(reinterpret_cast<ImTextureID>(std::uintptr_t(app.shown.texture)), {left, top}, {left + width, top + height});
     const ProbePainter painter{app, list, {left, top}};
     list->PushClipRect({left, top}, {left + width, top + height}, true);

@@ -23,17 +23,26 @@ ImFont* load(std::initializer_list<const char*> candidates, float size, const Im
     return io.Fonts->AddFontDefault();
 }
 
+/// Only the glyphs that are used: rasterising thousands would be most of the start.
+ImVector<ImWchar> ranges_of(const char* text) {
+    ImFontGlyphRangesBuilder builder;
+    builder.AddText(text);
+    ImVector<ImWchar> ranges;
+    builder.BuildRanges(&ranges);
+    return ranges;
+}
+
 }  // namespace
 
 Fonts load_fonts(float scale) {
     // Latin with its extensions, Greek, Cyrillic, punctuation, arrows and mathematical signs.
     static constexpr ImWchar text[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x205e, 0x2190, 0x21ff, 0x2200, 0x22ff, 0x25cf, 0x25cf, 0};
-    static constexpr ImWchar icons[] = {0xf000, 0xf8ff, 0};
     const auto regular = {"opentype/inter/Inter-Regular.otf", "truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf",
                           "truetype/dejavu/DejaVuSans.ttf"};
     const auto bold = {"opentype/inter/Inter-SemiBold.otf", "truetype/roboto/unhinted/RobotoTTF/Roboto-Medium.ttf",
                        "truetype/dejavu/DejaVuSans-Bold.ttf"};
     const auto symbols = {"truetype/materialdesignicons-webfont/materialdesignicons-webfont.ttf"};
+    static const ImVector<ImWchar> icons = ranges_of(icon::all);
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     atlas.Clear();
     atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
@@ -45,8 +54,8 @@ Fonts load_fonts(float scale) {
     fonts.strong = load(bold, 12.5f * em * scale, text);
     fonts.small = load(regular, 11.5f * em * scale, text);
     fonts.large = load(bold, 18 * em * scale, text);
-    fonts.icons = load(symbols, 20 * scale, icons);
-    fonts.icons_small = load(symbols, 16 * scale, icons);
+    fonts.icons = load(symbols, 20 * scale, icons.Data);
+    fonts.icons_small = load(symbols, 16 * scale, icons.Data);
     return fonts;
 }
 

@@ -30,19 +30,33 @@ void start_job(App& app, std::string title, bool blocks, std::function<std::func
 
 namespace {
 
-/// Renders for a part of a frame's time, so that the progress and Cancel stay alive.
-void advance_export(App& app) {
+/// Does steps for a part of a frame's time, so that the window and Cancel stay alive. False where one failed.
+template <class Steps>
+bool advance(App& app, Steps& steps) {
     using Clock = std::chrono::steady_clock;
     const auto until = Clock::now() + std::chrono::milliseconds(30);
-    try {
-        do app.jobs.exporting->step();
-        while (!app.jobs.exporting->done() && Clock::now() < until);
-    } catch (const Error& error) {
-        app.jobs.exporting.reset();
-        say(app, Tone::error, error.what());
-        return;
-    }
     app.wake();
+    try {
+        while (!steps.done() && Clock::now() < until) steps.step();
+        return true;
+    } catch (const Error& error) {
+        say(app, Tone::error, error.what());
+        return false;
+    }
+}
+
+void advance_upload(App& app) {
+    const bool good = advance(app, app.jobs.uploading->steps);
+    if (good && !app.jobs.uploading->steps.done()) return;
+    const std::unique_ptr<Upload> upload = std::move(app.jobs.uploading);
+    if (!good) return;
+    app.renderer->set_picture(upload->steps.take());
+    app.uploaded = upload->picture;
+    app.jobs.preparing.reset();
+}
+
+void advance_export(App& app) {
+    if (!advance(app, *app.jobs.exporting)) return app.jobs.exporting.reset();
     if (!app.jobs.exporting->done()) return;
     Image image = app.jobs.exporting->take();
     app.jobs.exporting.reset();
@@ -52,6 +66,7 @@ void advance_export(App& app) {
 }  // namespace
 
 void advance_jobs(App& app) {
+    if (app.jobs.uploading) advance_upload(app);
     if (app.jobs.exporting) advance_export(app);
     for (std::size_t i = 0; i < app.jobs.running.size();) {
         if (!app.jobs.running[i]->done) {
@@ -67,6 +82,25 @@ void advance_jobs(App& app) {
         else if (job->finish)
             job->finish(app);
     }
+}
+
+void prepare_picture(App& app, PicturePtr picture) {
+    if (app.jobs.preparing == picture) return;
+    app.jobs.preparing = picture;
+    start_job(app, "", false, [picture]() -> std::function<void(App&)> {
+        auto levels = std::make_shared<std::vector<Image>>(smaller_levels(picture->image));
+        return [picture, levels](App& a) {
+            if (picture != a.editor.document.picture) {  // another was opened meanwhile
+                if (a.jobs.preparing == picture) a.jobs.preparing.reset();
+                return;
+            }
+            try {
+                a.jobs.uploading = std::make_unique<Upload>(picture, std::move(*levels));
+            } catch (const Error& error) {
+                say(a, Tone::error, error.what());
+            }
+        };
+    });
 }
 
 bool is_busy(const App& app) {

@@ -27,8 +27,18 @@ struct Job {
     std::jthread thread;
 };
 
+/// A picture on its way to the renderer.
+struct Upload {
+    PicturePtr picture;
+    std::vector<Image> levels;
+    PictureUpload steps;
+    Upload(PicturePtr p, std::vector<Image> l) : picture(std::move(p)), levels(std::move(l)), steps(picture->image, levels) {}
+};
+
 struct Jobs {
     std::vector<std::unique_ptr<Job>> running;
+    PicturePtr preparing;                  ///< the picture whose mipmaps are being made, or that is uploaded
+    std::unique_ptr<Upload> uploading;     ///< handed over some rows a frame
     std::unique_ptr<ExportJob> exporting;  ///< rendered tile by tile on the window's thread
     std::function<void(App&, Image)> exported;
     std::string export_title;
@@ -36,6 +46,9 @@ struct Jobs {
 
 /// Runs `work` on a thread; what it returns is called on the window's thread afterwards. An Error it throws is said.
 void start_job(App& app, std::string title, bool blocks, std::function<std::function<void(App&)>()> work);
+
+/// Begins to hand a picture to the renderer; App::uploaded is it when that is done.
+void prepare_picture(App& app, PicturePtr picture);
 
 /// Does the window's share of the work that is under way: a tile, what a thread has finished.
 void advance_jobs(App& app);

@@ -343,7 +343,7 @@ void run(App& app) {
         handle_requests(app);
         set_title(app);
         draw_frame(app);
-        if (leaves_at_once && app.shown.texture != 0) return;
+        if (leaves_at_once && app.shown.picture) return;
         release_late_keys(app);
         --app.frames_wanted;
     }

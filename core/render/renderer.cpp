@@ -98,6 +98,59 @@ void clear_window(int width, int height, glm::vec3 colour) {
     glClear(GL_COLOR_BUFFER_BIT);
 }
 
+void check_texture_size(const Image& image) {
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    if (image.width > largest || image.height > largest)
+        throw Error(fmt::format("the picture is {} x {} pixels; this graphics driver holds at most {} x {}",
+                                image.width, image.height, largest, largest));
+}
+
+PictureUpload::PictureUpload(const Image& image, std::span<const Image> levels) : image_(image), levels_(levels) {
+    check_texture_size(image);
+    texture_ = {make_texture(), image.width, image.height, int(levels.size())};
+    glBindTexture(GL_TEXTURE_2D, texture_.texture.name());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, texture_.last_level);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    for (int level = 0; level <= texture_.last_level; ++level) {
+        const Image& from = level == 0 ? image : levels[std::size_t(level) - 1];
+        glTexImage2D(GL_TEXTURE_2D, level, image.bits() == 16 ? GL_RGBA16 : GL_RGBA8, from.width, from.height, 0,
+                     GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    }
+    check_gl("making room for the picture");
+}
+
+void PictureUpload::step() {
+    assert(!done());
+    const Image& from = level_ == 0 ? image_ : levels_[std::size_t(level_) - 1];
+    const int rows = std::clamp((1 << 20) / from.width, 1, from.height - row_);
+    const bool deep = from.bits() == 16;
+    const std::size_t row_bytes = std::size_t(from.width) * (deep ? 8 : 4);
+    glBindTexture(GL_TEXTURE_2D, texture_.texture.name());
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    glTexSubImage2D(GL_TEXTURE_2D, level_, 0, row_, from.width, rows, GL_RGBA,
+                    deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
+                    pixel_bytes(from).data() + std::size_t(row_) * row_bytes);
+    check_gl("uploading the picture");
+    row_ += rows;
+    if (row_ == from.height) row_ = 0, ++level_;
+}
+
+PictureTexture PictureUpload::take() {
+    assert(done());
+    return std::move(texture_);
+}
+
+PictureTexture upload_picture(const Image& image) {
+    const std::vector<Image> levels = smaller_levels(image);
+    PictureUpload upload(image, levels);
+    while (!upload.done()) upload.step();
+    return upload.take();
+}
+
 Renderer::Renderer()
     : mesh_program_(make_program(shaders::mesh_vert, shaders::mesh_frag)),
       resolve_program_(make_program(shaders::screen_vert, shaders::resolve_frag)),
@@ -110,31 +163,7 @@ Renderer::Renderer()
       triangles_(make_buffer()),
       edges_(make_buffer()) {}
 
-void Renderer::set_picture(const Image& image, std::span<const Image> levels) {
-    GLint largest = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-    if (image.width > largest || image.height > largest)
-        throw Error(fmt::format("the picture is {} x {} pixels; this graphics driver holds at most {} x {}",
-                                image.width, image.height, largest, largest));
-    const bool deep = image.bits() == 16;
-    picture_ = make_texture();
-    glBindTexture(GL_TEXTURE_2D, picture_.name());
-    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-    const auto upload = [deep](GLint level, const Image& from) {
-        glTexImage2D(GL_TEXTURE_2D, level, deep ? GL_RGBA16 : GL_RGBA8, from.width, from.height, 0, GL_RGBA,
-                     deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, pixel_bytes(from).data());
-    };
-    last_level_ = int(levels.size());
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, last_level_);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    upload(0, image);
-    for (int level = 0; level < last_level_; ++level) upload(level + 1, levels[std::size_t(level)]);
-    check_gl("uploading the picture");
-    picture_size_ = {image.width, image.height};
-}
+void Renderer::set_picture(PictureTexture picture) { picture_ = std::move(picture); }
 
 void Renderer::set_mesh(const Mesh& mesh) {
     glBindVertexArray(mesh_array_.name());
@@ -168,8 +197,8 @@ void Renderer::draw(const View& view, int samples) {
     glUseProgram(mesh_program_.name());
     set_view(mesh_program_, view, samples);
     set(mesh_program_, "picture", 0);
-    set(mesh_program_, "last_level", last_level_);
-    glBindTexture(GL_TEXTURE_2D, picture_.name());
+    set(mesh_program_, "last_level", picture_.last_level);
+    glBindTexture(GL_TEXTURE_2D, picture_.texture.name());
     // Where the mesh folds, a later triangle lies over an earlier one.
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
@@ -217,7 +246,7 @@ GLuint Renderer::display(const View& view, const DisplayColours& colours, double
     begin(shown_);
     glUseProgram(display_program_.name());
     const glm::dvec2 corner = -view.origin * view.scale;
-    const glm::dvec2 opposite = corner + glm::dvec2(picture_size_) * view.scale;
+    const glm::dvec2 opposite = corner + glm::dvec2(picture_.width, picture_.height) * view.scale;
     set(display_program_, "layer", 0);
     set(display_program_, "frame", glm::vec4(corner.x, corner.y, opposite.x, opposite.y));
     set(display_program_, "square", float(square));

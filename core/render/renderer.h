@@ -34,6 +34,38 @@ GlTexture preview_texture(const Image& image);
 /// Fills the window itself with one colour, before its toolkit draws into it.
 void clear_window(int width, int height, glm::vec3 colour);
 
+/// A picture as the graphics driver holds it.
+struct PictureTexture {
+    GlTexture texture;
+    int width = 0, height = 0;
+    int last_level = 0;  ///< the smallest mipmap
+};
+
+/// Throws Error where the driver has no texture as large as the image.
+void check_texture_size(const Image& image);
+
+/// Hands a picture to the driver some rows at a time, so that a large one does not stop the window.
+class PictureUpload {
+  public:
+    /// image, levels (as smaller_levels gives them): must outlive it. Throws Error as check_texture_size.
+    PictureUpload(const Image& image, std::span<const Image> levels);
+
+    bool done() const { return level_ > texture_.last_level; }
+    /// Uploads about a million pixels.
+    void step();
+    /// Requires done().
+    PictureTexture take();
+
+  private:
+    const Image& image_;
+    std::span<const Image> levels_;
+    PictureTexture texture_;
+    int level_ = 0, row_ = 0;
+};
+
+/// All of it at once.
+PictureTexture upload_picture(const Image& image);
+
 struct DisplayColours {
     glm::vec3 canvas, light, dark;  ///< beside the picture, and the two of the checkerboard; 0 to 1
     glm::vec4 lines;                ///< of the mesh, straight alpha
@@ -44,8 +76,7 @@ class Renderer {
     /// Needs a loaded context, which must outlive it. Throws Error where a shader does not compile.
     Renderer();
 
-    /// levels: as smaller_levels gives them. Throws Error where the driver has no texture that large.
-    void set_picture(const Image& image, std::span<const Image> levels);
+    void set_picture(PictureTexture picture);
     void set_mesh(const Mesh& mesh);
     /// now: #vertices of the mesh, image pixels
     void set_positions(std::span<const glm::vec2> now);
@@ -68,12 +99,10 @@ class Renderer {
     GlProgram mesh_program_, resolve_program_, display_program_, lines_program_;
     GlVertexArray mesh_array_, empty_array_;
     GlBuffer rest_, now_, triangles_, edges_;
-    GlTexture picture_;
+    PictureTexture picture_;
     Target layer_, integers_, shown_;
     std::vector<std::uint32_t> triangle_places_;
     std::size_t edge_count_ = 0;
-    glm::ivec2 picture_size_{0};
-    int last_level_ = 0;
 };
 
 }  // namespace probewarp

@@ -70,7 +70,7 @@ void render(benchmark::State& state) {
     document.probes.push_back(new_probe(document, {4500, 1500}));
     Deformation deformation;
     update(deformation, document);
-    renderer.set_picture(document.picture->image, smaller_levels(document.picture->image));
+    renderer.set_picture(upload_picture(document.picture->image));
     renderer.set_mesh(deformation.mesh);
     renderer.set_positions(deformation.now);
     for (auto _ : state) {
