@@ -141,7 +141,39 @@ TEST_P(ExactTest, ShrinkingDoesNotAlias) {
     }
 }
 
+TEST_P(ExactTest, AnExportMayBeLargerThanATexture) {
+    // 17600 pixels wide; drivers hold 16384. The input is smooth, so that a sixteenth of a pixel changes little.
+    const Image in = read(golden / "input/wide.png"), out = render("wide.png", {"--scale", "16"});
+    ASSERT_EQ(out.width, 17600);
+    ASSERT_EQ(out.height, 640);
+    for (int y = 0; y < in.height; ++y)
+        for (int x = 0; x < in.width; ++x)
+            for (std::size_t k = 0; k < 4; ++k)
+                ASSERT_NEAR(pixel(out, 16 * x + 8, 16 * y + 8)[k], pixel(in, x, y)[k], 2) << x << ", " << y;
+}
+
 INSTANTIATE_TEST_SUITE_P(All, ExactTest, testing::Values("osmesa", "egl"), [](const auto& p) { return std::string(p.param); });
+
+TEST(Refusal, OfAPictureLargerThanATexture) {
+    const fs::path folder = scratch_folder();
+    Image image;
+    image.width = 20000;
+    image.height = 2;
+    image.rgba = std::vector<std::uint8_t>(20000 * 2 * 4, 255);
+    write_png(folder / "long.png", image);
+    const Outcome run = run_program({"render", folder / "long.png", "-o", folder / "out.png", "--backend", "osmesa"});
+    EXPECT_EQ(run.code, 1);
+    EXPECT_NE(run.errors.find("the picture is 20000 x 2 pixels; this graphics driver holds at most 16384 x 16384"), std::string::npos) << run.errors;
+    EXPECT_FALSE(fs::exists(folder / "out.png"));
+}
+
+TEST(Refusal, OfAnExportThatIsTooLarge) {
+    const fs::path output = scratch_folder() / "out.png";
+    const Outcome run = run_program({"render", golden / "input/card.png", "-o", output, "--scale", "400"});
+    EXPECT_EQ(run.code, 1);
+    EXPECT_NE(run.errors.find("the export would be 38400 x 38400 pixels; at most 32768 along a side"), std::string::npos) << run.errors;
+    EXPECT_FALSE(fs::exists(output));
+}
 
 }  // namespace
 }  // namespace probewarp::test
