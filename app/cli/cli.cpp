@@ -51,6 +51,8 @@ void add_render(CLI::App& app, RenderOptions& o) {
     command->add_option("--background", o.background, "#rrggbb, white, black or none");
     command->add_option("--format", o.format, "png, jpeg, bmp, tga, obj or probewarp, whatever OUTPUT ends with");
     add_backend(*command, o.backend);
+    command->add_option("--deform", o.deform, "processor or shader: which one moves the vertices")
+        ->check(CLI::IsMember({"processor", "shader"}));
     command->add_flag("--quiet", o.quiet, "Show no progress");
 }
 

@@ -20,6 +20,7 @@ struct RenderOptions {
     std::string canvas = "image";
     std::string background = "none";
     std::string backend = "auto";
+    std::string deform = "processor";
     std::string format;  ///< empty: by the output's ending
     bool quiet = false;
 };

@@ -101,7 +101,10 @@ Image rendered(const Document& document, const Deformation& deformation, const E
     Renderer renderer;
     renderer.set_picture(upload_picture(document.picture->image));
     renderer.set_mesh(deformation.mesh);
-    renderer.set_positions(deformation.now);
+    if (o.deform == "shader")
+        renderer.set_blend(deformation.weights, deformation.transformations, glm::vec2(centre(document.picture->image)));
+    else
+        renderer.set_positions(deformation.now);
     ExportJob job(renderer, document, deformation, settings);
     while (!job.done()) {
         job.step();

@@ -61,6 +61,13 @@ void upload_vertices(const GlBuffer& buffer, std::span<const glm::vec2> points, 
     glEnableVertexAttribArray(location);
 }
 
+void upload_texels(const GlBuffer& buffer, const GlTexture& texture, std::span<const std::byte> bytes, GLenum format) {
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer.name());
+    glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(bytes.size()), bytes.data(), GL_STREAM_DRAW);
+    glBindTexture(GL_TEXTURE_BUFFER, texture.name());
+    glTexBuffer(GL_TEXTURE_BUFFER, format, buffer.name());
+}
+
 }  // namespace
 
 std::vector<Image> smaller_levels(const Image& image) {
@@ -153,15 +160,21 @@ PictureTexture upload_picture(const Image& image) {
 
 Renderer::Renderer()
     : mesh_program_(make_program(shaders::mesh_vert, shaders::mesh_frag)),
+      mesh_dlb_program_(make_program(shaders::mesh_dlb_vert, shaders::mesh_frag)),
       resolve_program_(make_program(shaders::screen_vert, shaders::resolve_frag)),
       display_program_(make_program(shaders::screen_vert, shaders::display_frag)),
       lines_program_(make_program(shaders::mesh_vert, shaders::lines_frag)),
+      lines_dlb_program_(make_program(shaders::mesh_dlb_vert, shaders::lines_frag)),
       mesh_array_(make_vertex_array()),
       empty_array_(make_vertex_array()),
       rest_(make_buffer()),
       now_(make_buffer()),
       triangles_(make_buffer()),
-      edges_(make_buffer()) {}
+      edges_(make_buffer()),
+      weights_(make_buffer()),
+      transformations_(make_buffer()),
+      weights_texture_(make_texture()),
+      transformations_texture_(make_texture()) {}
 
 void Renderer::set_picture(PictureTexture picture) { picture_ = std::move(picture); }
 
@@ -179,7 +192,38 @@ void Renderer::set_mesh(const Mesh& mesh) {
 void Renderer::set_positions(std::span<const glm::vec2> now) {
     glBindVertexArray(mesh_array_.name());
     upload_vertices(now_, now, 1, GL_STREAM_DRAW);
+    blend_centre_.reset();
     check_gl("uploading the mesh");
+}
+
+void Renderer::set_blend(std::span<const float> weights, std::span<const DualComplex<float>> transformations,
+                         glm::vec2 centre) {
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &largest);
+    if (weights.size() > std::size_t(largest))
+        throw Error(fmt::format("{} weights are more than the {} that this graphics driver's shaders can read",
+                                weights.size(), largest));
+    upload_texels(weights_, weights_texture_, std::as_bytes(weights), GL_R32F);
+    static_assert(sizeof(DualComplex<float>) == 4 * sizeof(float));
+    upload_texels(transformations_, transformations_texture_, std::as_bytes(transformations), GL_RGBA32F);
+    probes_ = int(transformations.size());
+    blend_centre_ = centre;
+    check_gl("uploading the weights");
+}
+
+void Renderer::bind_blend(const GlProgram& program) const {
+    if (!blend_centre_) return;
+    set(program, "weights", 1);
+    set(program, "transformations", 2);
+    set(program, "probes", probes_);
+    set(program, "centre", glm::dvec2(*blend_centre_));
+    glActiveTexture(GL_TEXTURE1);
+    glBindSampler(1, 0);
+    glBindTexture(GL_TEXTURE_BUFFER, weights_texture_.name());
+    glActiveTexture(GL_TEXTURE2);
+    glBindSampler(2, 0);
+    glBindTexture(GL_TEXTURE_BUFFER, transformations_texture_.name());
+    glActiveTexture(GL_TEXTURE0);
 }
 
 void Renderer::set_view(const GlProgram& program, const View& view, int samples) const {
@@ -194,10 +238,12 @@ void Renderer::draw(const View& view, int samples) {
     begin(layer_);
     const GLfloat nothing[4]{};
     glClearBufferfv(GL_COLOR, 0, nothing);
-    glUseProgram(mesh_program_.name());
-    set_view(mesh_program_, view, samples);
-    set(mesh_program_, "picture", 0);
-    set(mesh_program_, "last_level", picture_.last_level);
+    const GlProgram& program = blend_centre_ ? mesh_dlb_program_ : mesh_program_;
+    glUseProgram(program.name());
+    set_view(program, view, samples);
+    bind_blend(program);
+    set(program, "picture", 0);
+    set(program, "last_level", picture_.last_level);
     glBindTexture(GL_TEXTURE_2D, picture_.texture.name());
     // Where the mesh folds, a later triangle lies over an earlier one.
     glEnable(GL_BLEND);
@@ -278,9 +324,11 @@ void Renderer::draw_lines(const View& view, glm::vec4 colour) {
                      GL_STATIC_DRAW);
         edge_count_ = edges.size();
     }
-    glUseProgram(lines_program_.name());
-    set_view(lines_program_, view, 1);
-    set(lines_program_, "colour", colour);
+    const GlProgram& program = blend_centre_ ? lines_dlb_program_ : lines_program_;
+    glUseProgram(program.name());
+    set_view(program, view, 1);
+    bind_blend(program);
+    set(program, "colour", colour);
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "math/dual_complex.h"
 #include "model/image.h"
 #include "model/mesh.h"
 #include "model/probe.h"
@@ -78,8 +79,12 @@ class Renderer {
 
     void set_picture(PictureTexture picture);
     void set_mesh(const Mesh& mesh);
-    /// now: #vertices of the mesh, image pixels
+    /// The mesh as the processor deformed it. now: #vertices of the mesh, image pixels
     void set_positions(std::span<const glm::vec2> now);
+    /// Has the vertex shader deform the mesh by DLB instead, until set_positions. Shapes as deform_dlb's.
+    /// Throws Error where the driver has no buffer that large.
+    void set_blend(std::span<const float> weights, std::span<const DualComplex<float>> transformations,
+                   glm::vec2 centre);
 
     /// Draws the deformed picture as weighted colours, samples x samples texels a target pixel.
     void draw(const View& view, int samples);
@@ -94,11 +99,16 @@ class Renderer {
 
   private:
     void set_view(const GlProgram& program, const View& view, int samples) const;
+    void bind_blend(const GlProgram& program) const;
     void draw_lines(const View& view, glm::vec4 colour);
 
-    GlProgram mesh_program_, resolve_program_, display_program_, lines_program_;
+    GlProgram mesh_program_, mesh_dlb_program_, resolve_program_, display_program_, lines_program_, lines_dlb_program_;
     GlVertexArray mesh_array_, empty_array_;
     GlBuffer rest_, now_, triangles_, edges_;
+    GlBuffer weights_, transformations_;
+    GlTexture weights_texture_, transformations_texture_;
+    std::optional<glm::vec2> blend_centre_;  ///< set where the vertex shader deforms
+    int probes_ = 0;
     PictureTexture picture_;
     Target layer_, integers_, shown_;
     std::vector<std::uint32_t> triangle_places_;

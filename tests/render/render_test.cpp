@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 #include <shaders/embedded.h>
 
+#include <cstdio>
+#include <numbers>
 #include <random>
 
 #include "model/document.h"
 #include "render/context.h"
+#include "render/export.h"
 
 namespace probewarp {
 namespace {
@@ -63,6 +66,65 @@ TEST(Mipmaps, AreAlphaWeightedMeansDownToOnePixel) {
     ASSERT_EQ(levels.size(), 2u);
     EXPECT_EQ(std::get<0>(levels[0].rgba), (std::vector<std::uint8_t>{255, 0, 0, 100, 128, 128, 128, 255}));
     EXPECT_EQ(levels[1].width * levels[1].height, 1);
+}
+
+/// A picture whose every pixel says where it is: red is x, green is y, in 65535ths of the side.
+PicturePtr ramp(int side) {
+    Picture picture;
+    picture.image.width = picture.image.height = side;
+    std::vector<std::uint16_t> rgba;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            for (const int v : {65535 * x / side, 65535 * y / side, 0, 65535}) rgba.push_back(std::uint16_t(v));
+    picture.image.rgba = std::move(rgba);
+    return std::make_shared<const Picture>(std::move(picture));
+}
+
+Image exported(Renderer& renderer, const Document& document, const Deformation& deformation) {
+    ExportJob job(renderer, document, deformation, {});
+    while (!job.done()) job.step();
+    return job.take();
+}
+
+TEST(VertexShader, DeformsAsTheProcessorDoes) {
+    constexpr unsigned seed = 20261122;
+    std::printf("seed %u\n", seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> place(0, 256), way(-20, 20), angle(-1, 1);
+    const auto context = open_context("osmesa");
+    Renderer renderer;
+    for (const int probes : {0, 1, 3, 20}) {
+        Document document;
+        document.picture = ramp(256);
+        for (int i = 0; i < probes; ++i) {
+            Probe probe = new_probe(document, {place(random), place(random)});
+            probe.now += glm::dvec2(way(random), way(random));
+            probe.angle = angle(random);
+            document.probes.push_back(probe);
+        }
+        if (probes == 3) {  // a whole turn cancels between them: both must choose the heaviest
+            document.probes[0].angle = 2 * std::numbers::pi;
+            document.probes[1] = document.probes[0];
+            document.probes[1].angle = 0;
+            document.probes.pop_back();
+        }
+        Deformation deformation;
+        update(deformation, document);
+        EXPECT_EQ(deformation.cancelled > 0, probes == 3);
+        renderer.set_picture(upload_picture(document.picture->image));
+        renderer.set_mesh(deformation.mesh);
+        renderer.set_positions(deformation.now);
+        const Image processor = exported(renderer, document, deformation);
+        renderer.set_blend(deformation.weights, deformation.transformations, {128, 128});
+        const Image shader = exported(renderer, document, deformation);
+        // A hundredth of a pixel is 2.6 of the 256 levels that the ramp climbs a pixel; on the border, a pixel may
+        // be covered by one of the two only.
+        int far = 0;
+        for (int y = 0; y < 256; ++y)
+            for (int x = 0; x < 256; ++x)
+                for (std::size_t k = 0; k < 2; ++k) far += std::abs(pixel(processor, x, y)[k] - pixel(shader, x, y)[k]) > 3;
+        EXPECT_LE(far, probes == 0 ? 0 : 8) << probes << " probes";
+    }
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+#version 330 core
+// Like mesh.vert, but deforms the mesh itself: the same sum as core/model/deform.cpp, deform_dlb.
+
+layout(location = 0) in vec2 rest;  // image pixels
+
+uniform samplerBuffer weights;          // #vertices x #probes, row-major
+uniform samplerBuffer transformations;  // #probes: p0 and p1 of each DCN about the centre
+uniform int probes;
+uniform vec2 centre;  // image pixels
+
+uniform vec2 origin;
+uniform vec2 scale;
+uniform vec2 size;
+
+out vec2 back;
+
+const float cancelled_share = 1e-6;
+
+void main() {
+    vec4 s = vec4(0.0), heaviest = vec4(0.0);
+    float total = 0.0, most = -1.0;
+    for (int i = 0; i < probes; ++i) {
+        float weight = texelFetch(weights, gl_VertexID * probes + i).x;
+        vec4 p = texelFetch(transformations, i);
+        s += weight * p;
+        total += abs(weight);
+        if (abs(weight) > most) {
+            most = abs(weight);
+            heaviest = p;
+        }
+    }
+    float least = cancelled_share * total;
+    if (!(dot(s.xy, s.xy) >= least * least)) s = heaviest;
+    vec2 v = rest - centre;
+    vec2 turned = s.zw + s.y * vec2(-v.y, v.x);
+    vec2 way = 2.0 / dot(s.xy, s.xy) * vec2(dot(s.xy * vec2(1.0, -1.0), turned), dot(s.xy, turned.yx));
+    vec2 now = rest + (probes > 0 ? way : vec2(0.0));
+    back = rest - now;
+    gl_Position = vec4((now - origin) * scale / size * 2.0 - 1.0, 0.0, 1.0);
+}
