@@ -65,7 +65,10 @@ void draw_probe_row(App& app, Probe& probe) {
     list->AddCircleFilled({at.x + app.px(18), at.y + height / 2}, app.px(6), to_u32(probe.colour, probe.visible ? 1 : 0.4f), 24);
     draw_name(app, probe, at, chosen);
     ImGui::SetCursorScreenPos({at.x + width - app.px(62), at.y});
-    if (icon_button(app, "##lock", probe.locked ? icon::lock : icon::lock_open, probe.locked ? "Unlock" : "Lock: cannot be moved by hand")) {
+    ImGui::PushStyleVar(ImGuiStyleVar_Alpha, probe.locked ? 1.0f : 0.5f);  // most are unlocked: they step back
+    const bool toggled = icon_button(app, "##lock", probe.locked ? icon::lock : icon::lock_open, probe.locked ? "Unlock" : "Lock: cannot be moved by hand");
+    ImGui::PopStyleVar();
+    if (toggled) {
         probe.locked = !probe.locked;
         edit_at_once(app, probe.locked ? "Lock" : "Unlock");
     }

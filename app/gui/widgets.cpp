@@ -29,7 +29,7 @@ bool icon_button(App& app, const char* id, const char* symbol, const char* tip, 
     const bool hovered = ImGui::IsItemHovered() && why_not.empty();
     if (hovered) ImGui::GetWindowDrawList()->AddRectFilled(from, to, app.theme.line, app.px(5));
     const ImU32 colour = !why_not.empty() ? faded(app.theme.muted, 0.45f) : on ? app.theme.accent : hovered ? app.theme.text : app.theme.muted;
-    draw_icon(app.fonts.icons_small, {(from.x + to.x) / 2, (from.y + to.y) / 2}, colour, symbol);
+    draw_icon(app.fonts.icons_small, {(from.x + to.x) / 2, (from.y + to.y) / 2}, faded(colour, ImGui::GetStyle().Alpha), symbol);
     tooltip(why_not.empty() ? tip : why_not.c_str());
     return clicked;
 }
