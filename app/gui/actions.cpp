@@ -96,12 +96,15 @@ void replace_picture_dialog(App& app) {
                                [path]() -> std::function<void(App&)> {
                                    auto picture = std::make_shared<const Picture>(read_picture(path));
                                    return [picture](App& a) {
+                                       Document document = a.editor.document;
+                                       replace_picture(document, picture);
                                        try {
                                            check_texture_size(picture->image);
+                                           check_size(document);
                                        } catch (const Error& error) {
                                            return say(a, Tone::error, error.what());
                                        }
-                                       replace_picture(a.editor.document, picture);
+                                       a.editor.document = std::move(document);
                                        commit(a.editor, "Replace picture");
                                        a.editor.fit_wanted = true;
                                    };

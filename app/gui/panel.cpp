@@ -152,9 +152,20 @@ void method_combo(App& app, const char* label, std::string& name, const Rows& ro
     ImGui::PopID();
 }
 
+/// Takes the density unless the mesh would need more weights than fit; says so then.
+void set_cells(App& app, int cells) {
+    Document changed = app.editor.document;
+    changed.cells = cells;
+    try {
+        check_size(changed);
+        app.editor.document.cells = cells;
+    } catch (const Error& error) {
+        app.editor.notice = error.what();
+    }
+}
+
 /// A slim slider with a round grip, quadratic so that coarse meshes have room.
 void mesh_slider(App& app) {
-    Document& document = app.editor.document;
     row_label(app, "Mesh", 68);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x - app.px(48), height = app.px(look::field);
@@ -163,15 +174,10 @@ void mesh_slider(App& app) {
     if (ImGui::IsItemActive()) {
         is_step(app, "Mesh density");
         const double part = std::clamp(double((ImGui::GetIO().MousePos.x - at.x) / width), 0.0, 1.0);
-        document.cells = int(std::lround(least + (most - least) * part * part));
-        try {
-            check_size(document);
-        } catch (const Error& error) {
-            document.cells = app.editor.deformation.source.cells;
-            app.editor.notice = error.what();
-        }
+        set_cells(app, int(std::lround(least + (most - least) * part * part)));
     }
-    const float part = float(std::sqrt(std::clamp((document.cells - least) / (most - least), 0.0, 1.0)));
+    const int cells = app.editor.document.cells;
+    const float part = float(std::sqrt(std::clamp((cells - least) / (most - least), 0.0, 1.0)));
     const float middle = at.y + height / 2, grip = at.x + part * width;
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled({at.x, middle - app.px(2)}, {at.x + width, middle + app.px(2)}, app.theme.line, app.px(2));
@@ -180,11 +186,9 @@ void mesh_slider(App& app) {
     list->AddCircle({grip, middle}, app.px(7), app.theme.line, 24);
     tooltip("Cells along the picture's longer side");
     ImGui::SameLine(0, app.px(8));
-    int cells = document.cells;
+    int typed = cells;
     ImGui::SetNextItemWidth(app.px(40));
-    if (ImGui::InputInt("##cells", &cells, 0, 0)) {
-        document.cells = std::clamp(cells, min_cells, int(most));
-    }
+    if (ImGui::InputInt("##cells", &typed, 0, 0)) set_cells(app, std::clamp(typed, min_cells, int(most)));
     is_step(app, "Mesh density");
 }
 

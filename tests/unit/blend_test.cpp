@@ -23,8 +23,8 @@ struct BlendTest : ::testing::Test {
         T share = 0;  ///< |sum w_i p_i| / sum w_i: how well the direction of the sum is known
 
         Blend<T> blend() const { return dlb<T>(weights, p); }
-        /// Sums of up to 8 DCNs of up to 15 in size, a product of two and a division: 40 roundings of numbers up
-        /// to 30, all of which the division by the share makes larger.
+        /// Sums of up to 8 DCNs of up to 15 in size, a product of two and a division: 40 roundings of numbers
+        /// up to 30, all of which the division by the share makes larger.
         T rounding() const { return 40 * 30 * epsilon / 2 / share; }
     };
     static Case any() {
@@ -116,7 +116,8 @@ TYPED_TEST(BlendTest, FollowsTheHeaviestWhereTheWeightsCancel) {
 
 TYPED_TEST(BlendTest, CancelsBelowAMillionthAndNotAbove) {
     using T = TypeParam;
-    // Weights 1 and 1 - d on 1 and -1 leave d of 2 - d. Float rounds 1 - d by 3e-8, 3 per cent of the millionth.
+    // Weights 1 and 1 - d on 1 and -1 leave d of 2 - d. Float rounds 1 - d by 3e-8, 3 per cent of the
+    // millionth.
     const std::vector<DualComplex<T>> p{{}, -DualComplex<T>{}};
     const auto blend = [&p](double d) { return dlb<T>(std::vector<T>{T(1 - d), T(1)}, p); };
     EXPECT_TRUE(blend(1.9e-6).cancelled);

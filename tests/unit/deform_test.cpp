@@ -1,4 +1,5 @@
-// Deforming in float against the formula in double, and what must hold exactly: rest, whole pixels, whole turns.
+// Deforming in float against the formula in double, and what must hold exactly: rest, whole pixels, whole
+// turns.
 #include "model/deform.h"
 
 #include "generators.h"
@@ -67,9 +68,9 @@ TEST(Deform, IsWithinAHundredthOfAPixelOfTheFormula) {
         const Deformation deformation = deformed(document);
         for (std::size_t v = 0; v < deformation.now.size(); ++v) {
             const Exact exact(document, deformation.mesh.rest[v]);
-            // Where the probes pull against each other the sum is short (a small share), and the floats' rounding
-            // (2^-24 of up to 8192 pixels) counts 1/share times in s1 and 1/share^2 times in s0; the two sums of up
-            // to 64 numbers make it up to four times that. A float knows no better.
+            // Where the probes pull against each other the sum is short (a small share), and the floats'
+            // rounding (2^-24 of up to 8192 pixels) counts 1/share times in s1 and 1/share^2 times in s0; the
+            // two sums of up to 64 numbers make it up to four times that. A float knows no better.
             const double allowed = std::max(0.01, 8192 * 0x1p-22 / (exact.share * exact.share));
             if (exact.share > 2e-6) RC_ASSERT(distance(deformation.now[v], exact.now) <= allowed);
         }
@@ -93,7 +94,8 @@ TEST(Deform, WithoutProbesMovesNothing) {
 }
 
 TEST(Deform, OneProbeShiftsByWholePixelsExactly) {
-    Document document = blank_document(1024, 512, 128);  // cells of 8 pixels: every vertex is on a pixel's corner
+    Document document =
+        blank_document(1024, 512, 128);  // cells of 8 pixels: every vertex is on a pixel's corner
     add_probe(document, {301.25, 77.5}, {301.25 + 64, 77.5 - 3});
     const Deformation deformation = deformed(document);
     for (std::size_t v = 0; v < deformation.now.size(); ++v)
@@ -127,7 +129,8 @@ TEST(Deform, VerticesWhoseWeightsCancelAreCountedAndFollowTheHeaviest) {
         // Of equals the first: the one at rest, or the one that moved by 7.
         for (const std::size_t v : {1u, 4u, 7u})
             // A whole turn in floats: 2e-7 of the 50 pixels to the probe, and as much again for the sum.
-            EXPECT_LT(distance(deformation.now[v], deformation.mesh.rest[v] + glm::vec2(second ? 0 : 7, 0)), 3e-5);
+            EXPECT_LT(distance(deformation.now[v], deformation.mesh.rest[v] + glm::vec2(second ? 0 : 7, 0)),
+                      3e-5);
     }
 }
 

@@ -1,4 +1,5 @@
-// The document and its deformation: what is computed anew and what is kept, and the pose of the picture at a place.
+// The document and its deformation: what is computed anew and what is kept, and the pose of the picture at a
+// place.
 #include "model/document.h"
 
 #include <limits>
@@ -215,7 +216,8 @@ TEST(PoseAt, ANewProbeThereChangesNothingUnderIt) {
         added.angle = pose->angle;
         const auto own = transformation(added, {160, 100});
         RC_ASSERT(std::abs(own.p0 - blend.p0) < 1e-12);  // same sign: the half angle counts
-        // The deformed vertices are floats (3e-5 of 320 pixels), their weights too (6e-8 of probes 320 apart).
+        // The deformed vertices are floats (3e-5 of 320 pixels), their weights too (6e-8 of probes 320
+        // apart).
         RC_ASSERT(std::abs(own.p1 - blend.p1) < 2e-4);
     });
 }

@@ -22,8 +22,8 @@ constexpr double size = 10;  // of the shifts in the laws
 template <class T>
 struct DualComplexTest : ::testing::Test {
     static constexpr T epsilon = std::numeric_limits<T>::epsilon();
-    // The laws join up to three DCNs of |p1| <= 10 sqrt 2 and one point: some twenty operations, each rounding
-    // numbers of up to 60 by half an epsilon.
+    // The laws join up to three DCNs of |p1| <= 10 sqrt 2 and one point: some twenty operations, each
+    // rounding numbers of up to 60 by half an epsilon.
     static constexpr T rounding = 20 * 60 * epsilon / 2;
 
     static bool near(const DualComplex<T>& p, const DualComplex<T>& q, T tolerance = rounding) {
@@ -83,8 +83,8 @@ TYPED_TEST(DualComplexTest, KeepsDistances) {
     });
 }
 
-/// A rigid transformation as the matrix of homogeneous coordinates, in double: the turn by t about c, then the
-/// shift by d.
+/// A rigid transformation as the matrix of homogeneous coordinates, in double: the turn by t about c, then
+/// the shift by d.
 struct Rigid {
     double t;
     std::complex<double> c, d;
@@ -120,22 +120,24 @@ TYPED_TEST(DualComplexTest, MultipliesAsMatricesDo) {
         const std::complex<double> expected{m[0][0] * v.real() + m[0][1] * v.imag() + m[0][2],
                                             m[1][0] * v.real() + m[1][1] * v.imag() + m[1][2]};
         const std::complex<double> got(act(a.dcn<T>() * b.dcn<T>(), v));
-        // Besides the laws' rounding, the angles themselves (up to 2 pi) are rounded to T, and turn points that
-        // are up to 40 away from a centre.
-        RC_ASSERT(std::abs(got - expected) <= double(TestFixture::rounding + 2 * 40 * 8 * TestFixture::epsilon));
+        // Besides the laws' rounding, the angles themselves (up to 2 pi) are rounded to T, and turn points
+        // that are up to 40 away from a centre.
+        RC_ASSERT(std::abs(got - expected) <=
+                  double(TestFixture::rounding + 2 * 40 * 8 * TestFixture::epsilon));
     });
 }
 
-/// Half angles in all of [-pi, pi], and at its edges and at the threshold of sinc's Taylor branch, on both sides.
+/// Half angles in all of [-pi, pi], and at its edges and at the threshold of sinc's Taylor branch, on both
+/// sides.
 template <class T>
 rc::Gen<T> half_angle() {
     const auto to_T = [](double h) { return T(h); };
     const double threshold = std::pow(double(std::numeric_limits<T>::epsilon()), 0.25);
     return rc::gen::map(
-        rc::gen::oneOf(
-            real(-pi, pi), rc::gen::element(-pi, pi, 0.0, threshold, -threshold), magnitude(-40, -4),
-            rc::gen::map(magnitude(-18, -3), [](double d) { return d < 0 ? -pi - d : pi - d; }),
-            rc::gen::map(magnitude(-18, -1), [=](double d) { return threshold * (1 + d); })),
+        rc::gen::oneOf(real(-pi, pi), rc::gen::element(-pi, pi, 0.0, threshold, -threshold),
+                       magnitude(-40, -4),
+                       rc::gen::map(magnitude(-18, -3), [](double d) { return d < 0 ? -pi - d : pi - d; }),
+                       rc::gen::map(magnitude(-18, -1), [=](double d) { return threshold * (1 + d); })),
         to_T);
 }
 
@@ -145,8 +147,8 @@ TYPED_TEST(DualComplexTest, ExpOfLogIsTheSame) {
         const DualComplex<T> p{std::polar(T(1), *half_angle<T>()), TestFixture::any_point()};
         const auto x = log(p);
         RC_ASSERT(x.h >= -std::numbers::pi_v<T> && x.h < std::numbers::pi_v<T>);
-        // p0: the roundings of arg (numbers up to pi), cos and sin. p1: one division and one multiplication by the
-        // same sinc; numbers up to 15.
+        // p0: the roundings of arg (numbers up to pi), cos and sin. p1: one division and one multiplication
+        // by the same sinc; numbers up to 15.
         RC_ASSERT(TestFixture::near(exp(x), p, 16 * TestFixture::epsilon));
     });
 }
@@ -175,11 +177,12 @@ TYPED_TEST(DualComplexTest, SincIsExactOnBothSidesOfItsThreshold) {
     using T = TypeParam;
     const T threshold = std::sqrt(std::sqrt(this->epsilon));
     for (const T h : {T(0), threshold / 8, std::nextafter(threshold, T(0)), threshold,
-                      std::nextafter(threshold, T(1)), 2 * threshold, T(1), T(3)})
+                      std::nextafter(threshold, T(1)), 2 * threshold, 8 * threshold, T(1), T(3)})
         for (const T sign : {T(1), T(-1)}) {
             const long double x = h;
             const long double expected = x == 0 ? 1 : std::sin(x) / x;
-            // Two roundings of a number up to 1, and the Taylor polynomial's next term, h^4/120 < epsilon/120.
+            // Two roundings of a number up to 1, and the Taylor polynomial's next term, h^4/120 <
+            // epsilon/120.
             EXPECT_NEAR(double(sinc(sign * h)), double(expected), double(1.1 * this->epsilon)) << h;
         }
 }
@@ -278,7 +281,8 @@ TYPED_TEST(DualComplexTest, SlerpByHand) {
 }
 
 TEST(DualComplex, AWholeTurnIsTheOtherSign) {
-    const auto once = rotation(2 * pi, std::complex<double>(3, 4)), twice = rotation(4 * pi, std::complex<double>(3, 4));
+    const auto once = rotation(2 * pi, std::complex<double>(3, 4)),
+               twice = rotation(4 * pi, std::complex<double>(3, 4));
     // pi itself is rounded by 1.2e-16, and the centre is 5 away.
     EXPECT_LT(std::abs(once.p0 + 1.0), 1e-15);
     EXPECT_LT(std::abs(once.p1), 1e-14);

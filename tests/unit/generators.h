@@ -49,8 +49,9 @@ inline rc::Gen<double> magnitude(double least_exponent, double most_exponent) {
 /// Radians: many turns, or a multiple of a quarter turn up to a tiny difference.
 inline rc::Gen<double> angle(double turns) {
     const double most = 2 * std::numbers::pi * turns;
-    const auto quarter = rc::gen::map(rc::gen::pair(whole(int(-4 * turns), int(4 * turns)), magnitude(-17, -2)),
-                                      [](std::pair<int, double> x) { return x.first * std::numbers::pi / 2 + x.second; });
+    const auto quarter =
+        rc::gen::map(rc::gen::pair(whole(int(-4 * turns), int(4 * turns)), magnitude(-17, -2)),
+                     [](std::pair<int, double> x) { return x.first * std::numbers::pi / 2 + x.second; });
     return rc::gen::oneOf(real(-most, most), quarter);
 }
 

@@ -99,10 +99,12 @@ TEST(History, ForgetsTheOldestBeyondItsLimit) {
     commit(history, with_cells(most + 1), "");  // forgets 1
     EXPECT_EQ(history.steps.size(), max_steps);
     EXPECT_EQ(cells(history), most + 1);
-    while (undo(history)) {}
+    while (undo(history)) {
+    }
     EXPECT_EQ(cells(history), 2);
     EXPECT_TRUE(is_saved(history));  // the marker moved along
-    while (redo(history)) {}
+    while (redo(history)) {
+    }
     commit(history, with_cells(most + 2), "");  // forgets the saved one
     while (undo(history)) EXPECT_FALSE(is_saved(history));
     EXPECT_FALSE(is_saved(history));
@@ -115,9 +117,17 @@ TEST(History, DoesWhatAListOfValuesWithAPlaceInItDoes) {
         std::size_t at = 0;
         int on_disk = 0;
         for (int i = 1; i <= 60; ++i) switch (*whole(0, 5)) {
-                case 0: RC_ASSERT(undo(history) == (at > 0)); at -= at > 0; break;
-                case 1: RC_ASSERT(redo(history) == (at + 1 < values.size())); at += at + 1 < values.size(); break;
-                case 2: history.saved = history.at, on_disk = values[at]; break;
+                case 0:
+                    RC_ASSERT(undo(history) == (at > 0));
+                    at -= at > 0;
+                    break;
+                case 1:
+                    RC_ASSERT(redo(history) == (at + 1 < values.size()));
+                    at += at + 1 < values.size();
+                    break;
+                case 2:
+                    history.saved = history.at, on_disk = values[at];
+                    break;
                 default:
                     commit(history, with_cells(i), "");
                     values.resize(++at);

@@ -102,7 +102,8 @@ TEST(Mesh, WhereItFoldsTheLastDrawnIsFound) {
 TEST(Mesh, CellsWithoutAreaAreNotFound) {
     const Mesh mesh = grid_mesh(20, 10, 2);
     std::vector<glm::vec2> flat = mesh.rest;
-    for (std::size_t v : {std::size_t(2), std::size_t(5)}) flat[v] = flat[v - 1];  // the right cell is a line now
+    for (std::size_t v : {std::size_t(2), std::size_t(5)})
+        flat[v] = flat[v - 1];  // the right cell is a line now
     const auto at = locate(mesh, flat, {10, 5});
     ASSERT_TRUE(at);
     EXPECT_LT(distance(rest_point(mesh, *at), {10, 5}), 1e-12);  // as above

@@ -30,7 +30,8 @@ inline Document blank_document(int width, int height, int cells = default_cells)
 }
 
 /// Puts a probe down, then moves and turns it.
-inline Probe& add_probe(Document& document, glm::dvec2 rest, glm::dvec2 now, double angle = 0, double radius = 100) {
+inline Probe& add_probe(Document& document, glm::dvec2 rest, glm::dvec2 now, double angle = 0,
+                        double radius = 100) {
     Probe probe = new_probe(document, rest);
     probe.now = now;
     probe.angle = angle;

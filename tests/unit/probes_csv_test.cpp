@@ -10,10 +10,10 @@
 namespace probewarp {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::add_probe;
 using testing::blank_document;
 using testing::error_of;
+using ::testing::HasSubstr;
 
 /// Twice as long as the 1024 that the numbers are for; the centre is (1024, 512).
 Document wide() { return blank_document(2048, 1024); }
@@ -61,7 +61,9 @@ TEST(ProbesCsv, TakeLineEndsAndSpacesAsTheyCome) {
 
 TEST(ProbesCsv, PassOverSectionsTheyDoNotKnow) {
     const auto probes = decode_probes_csv(
-        "#probes ix,iy,itheta,x,y,theta,radius\n1,2,0,3,4,5,6\n#later rows\nanything\n#probes\n1,2,0,3,4,5,6\n", wide());
+        "#probes ix,iy,itheta,x,y,theta,radius\n1,2,0,3,4,5,6\n#later "
+        "rows\nanything\n#probes\n1,2,0,3,4,5,6\n",
+        wide());
     EXPECT_EQ(probes.size(), 2u);
 }
 
@@ -78,10 +80,12 @@ TEST(ProbesCsv, IdsGoOnAfterTheDocuments) {
 }
 
 TEST(ProbesCsv, AWrongRowNamesItsLine) {
-    for (const char* row : {"1,2,3", "1,2,3,4,5,6,7,8", "1,2,3,4,5,6,x", "1,2,3,4,5,6,", ",,,,,,", "1,2,3,4,5,6,0",
-                            "1,2,3,4,5,6,-1", "nan,2,3,4,5,6,7", "1,inf,3,4,5,6,7", "1e999,2,3,4,5,6,7",
-                            "1e7,2,3,4,5,6,7", "1,2,3,4,5,6,7 8", "hello", "0x10,2,3,4,5,6,7"}) {
-        const std::string error = error_in(std::string("#vertices x,y\n\n#probes\n1,2,0,3,4,5,6\n") + row + "\n");
+    for (const char* row :
+         {"1,2,3", "1,2,3,4,5,6,7,8", "1,2,3,4,5,6,x", "1,2,3,4,5,6,", ",,,,,,", "1,2,3,4,5,6,0",
+          "1,2,3,4,5,6,-1", "nan,2,3,4,5,6,7", "1,inf,3,4,5,6,7", "1e999,2,3,4,5,6,7", "1e7,2,3,4,5,6,7",
+          "1,2,3,4,5,6,7 8", "hello", "0x10,2,3,4,5,6,7"}) {
+        const std::string error =
+            error_in(std::string("#vertices x,y\n\n#probes\n1,2,0,3,4,5,6\n") + row + "\n");
         EXPECT_THAT(error, HasSubstr("line 5 ")) << row;
         EXPECT_EQ(error.find('\n'), std::string::npos) << row;
     }
@@ -94,7 +98,8 @@ TEST(ProbesCsv, WithoutProbesAreNoneOfThese) {
 
 TEST(ProbesCsv, HoldNothingThatAProjectCouldNot) {
     // A picture of 32768 pixels makes 1e6 units 3.2e7 pixels, and both angles may be 1e6.
-    for (const char* row : {"1e6,0,0,0,0,0,1", "0,0,0,0,-1e6,0,1", "0,0,0,0,0,0,1e6", "0,0,1e6,0,0,-1e6,1", "0,0,0,0,0,0,1e-9"})
+    for (const char* row :
+         {"1e6,0,0,0,0,0,1", "0,0,0,0,-1e6,0,1", "0,0,0,0,0,0,1e6", "0,0,1e6,0,0,-1e6,1", "0,0,0,0,0,0,1e-9"})
         EXPECT_THAT(error_of([&] {
                         decode_probes_csv(std::string("#probes\n") + row + "\n", blank_document(32768, 10));
                     }),

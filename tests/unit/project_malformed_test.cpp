@@ -13,10 +13,10 @@
 namespace probewarp {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::Bytes;
 using testing::deflated;
 using testing::error_of;
+using ::testing::HasSubstr;
 using testing::raw_zip;
 using testing::RawMember;
 using testing::to_bytes;
@@ -34,7 +34,9 @@ Bytes one_pixel() {
 }
 
 std::vector<RawMember> good_members() {
-    return {{"mimetype", to_bytes(project_mimetype)}, {"project.json", to_bytes(good_json)}, {"image.png", one_pixel()}};
+    return {{"mimetype", to_bytes(project_mimetype)},
+            {"project.json", to_bytes(good_json)},
+            {"image.png", one_pixel()}};
 }
 
 /// What opening says, "" where it opens. Whatever it says is one line that begins with the file's name.
@@ -102,9 +104,8 @@ TEST(MalformedProject, DoubledMembers) {
 }
 
 TEST(MalformedProject, NamesThatPointOut) {
-    for (const std::string name :
-         {"../evil", "a/../../evil", "..", ".", "/etc/passwd", "a\\b", "..\\evil", "C:evil", "a//b", "a/./b", "folder/",
-          "new\nline", ""}) {
+    for (const std::string name : {"../evil", "a/../../evil", "..", ".", "/etc/passwd", "a\\b", "..\\evil",
+                                   "C:evil", "a//b", "a/./b", "folder/", "new\nline", ""}) {
         auto members = good_members();
         members.push_back({name, to_bytes("x")});
         EXPECT_NE(refusal(members), "") << name;
@@ -118,68 +119,75 @@ TEST(MalformedProject, MembersAndFieldsOfALaterVersion) {
     auto members = good_members();
     members.push_back({"layers.json", to_bytes("{}")});
     EXPECT_THAT(refusal(members), HasSubstr("has a member layers.json that this version does not know"));
-    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"sliders\": []"), HasSubstr("the field \"sliders\""));
+    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"sliders\": []"),
+                HasSubstr("the field \"sliders\""));
     EXPECT_THAT(refusal_with("\"cells\": 10", "\"cells\": 10, \"kind\": 1"), HasSubstr("\"kind\" in mesh"));
-    EXPECT_THAT(refusal_with("\"name\": \"a.png\"", "\"name\": \"a.png\", \"x\": 1"), HasSubstr("\"x\" in image"));
+    EXPECT_THAT(refusal_with("\"name\": \"a.png\"", "\"name\": \"a.png\", \"x\": 1"),
+                HasSubstr("\"x\" in image"));
     EXPECT_THAT(refusal_with("\"id\": 3", "\"id\": 3, \"pin\": 1"), HasSubstr("\"pin\" in probes[0]"));
-    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"\\n\\u001b\\u0000\": 1"), HasSubstr("\"???\""));
+    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"\\n\\u001b\\u0000\": 1"),
+                HasSubstr("\"???\""));
 }
 
 TEST(MalformedProject, MissingFields) {
-    for (const char* field : {"format", "image", "mesh", "weights", "blend", "probes", "file", "cells", "id", "colour",
-                              "rest", "now", "angle_radians", "radius", "locked", "visible"})
-        EXPECT_THAT(refusal_with('"' + std::string(field) + '"', "\"other\""), HasSubstr("project.json")) << field;
+    for (const char* field :
+         {"format", "image", "mesh", "weights", "blend", "probes", "name", "file", "cells", "id", "colour",
+          "rest", "now", "angle_radians", "radius", "locked", "visible"})
+        EXPECT_THAT(refusal_with('"' + std::string(field) + '"', "\"other\""), HasSubstr("project.json"))
+            << field;
 }
 
+constexpr struct {
+    const char *from, *to, *said;
+} wrong_values[] = {
+    {"\"cells\": 10", "\"cells\": 0", "mesh.cells"},
+    {"\"cells\": 10", "\"cells\": -5", "mesh.cells"},
+    {"\"cells\": 10", "\"cells\": 1001", "mesh.cells"},
+    {"\"cells\": 10", "\"cells\": 4294967306", "mesh.cells"},            // 2^32 + 10
+    {"\"cells\": 10", "\"cells\": 18446744073709551615", "mesh.cells"},  // 2^64 - 1
+    {"\"cells\": 10", "\"cells\": 10.5", "mesh.cells"},
+    {"\"cells\": 10", "\"cells\": \"10\"", "mesh.cells"},
+    {"\"cells\": 10", "\"cells\": null", "mesh.cells"},
+    {"{\"cells\": 10}", "[]", "mesh"},
+    {"\"id\": 3", "\"id\": 0", "probes[0].id"},
+    {"\"id\": 3", "\"id\": -1", "probes[0].id"},
+    {"\"id\": 3", "\"id\": 2000000001", "probes[0].id"},
+    {"\"id\": 3", "\"id\": true", "probes[0].id"},
+    {"\"name\": \"P\"", "\"name\": 7", "probes[0].name"},
+    {"\"name\": \"P\"", "\"name\": \"a\\nb\"", "probes[0].name"},
+    {"\"name\": \"a.png\"", "\"name\": \"a\\u0000b\"", "image.name"},
+    {"#e69f00", "#E69F00", "probes[0].colour"},
+    {"#e69f00", "#e69f0", "probes[0].colour"},
+    {"#e69f00", "#e69f0g", "probes[0].colour"},
+    {"#e69f00", "e69f000", "probes[0].colour"},
+    {"[1.5, 2]", "[1.5]", "probes[0].rest"},
+    {"[1.5, 2]", "[1.5, 2, 3]", "probes[0].rest"},
+    {"[1.5, 2]", "[1.5, \"2\"]", "probes[0].rest"},
+    {"[1.5, 2]", "{\"x\": 1}", "probes[0].rest"},
+    {"[3, 4]", "[3, 1.1e7]", "probes[0].now"},
+    {"0.25", "1.1e6", "probes[0].angle_radians"},
+    {"0.25", "-1.1e6", "probes[0].angle_radians"},
+    {"\"radius\": 10", "\"radius\": 0", "probes[0].radius"},
+    {"\"radius\": 10", "\"radius\": -10", "probes[0].radius"},
+    {"\"radius\": 10", "\"radius\": 1e-300", "probes[0].radius"},
+    {"\"locked\": false", "\"locked\": 0", "probes[0].locked"},
+    {"\"visible\": true", "\"visible\": \"yes\"", "probes[0].visible"},
+    {"inverse-distance", "magic", "weights"},
+    {"\"dlb\"", "\"lbs\"", "blend"},
+    {"\"dlb\"", "null", "blend"},
+    {"\"file\": \"image.png\"", "\"file\": 3", "image.file"},
+    {"[{\"id\"", "[7, {\"id\"", "probes[0]"},
+    {"\"probes\": [", "\"probes\": {\"a\": [", "JSON"},
+};
+
 TEST(MalformedProject, WrongValuesNameTheirField) {
-    const struct {
-        const char *from, *to, *said;
-    } cases[] = {
-        {"\"cells\": 10", "\"cells\": 0", "mesh.cells"},
-        {"\"cells\": 10", "\"cells\": -5", "mesh.cells"},
-        {"\"cells\": 10", "\"cells\": 1001", "mesh.cells"},
-        {"\"cells\": 10", "\"cells\": 4294967306", "mesh.cells"},            // 2^32 + 10
-        {"\"cells\": 10", "\"cells\": 18446744073709551615", "mesh.cells"},  // 2^64 - 1
-        {"\"cells\": 10", "\"cells\": 10.5", "mesh.cells"},
-        {"\"cells\": 10", "\"cells\": \"10\"", "mesh.cells"},
-        {"\"cells\": 10", "\"cells\": null", "mesh.cells"},
-        {"{\"cells\": 10}", "[]", "mesh"},
-        {"\"id\": 3", "\"id\": 0", "probes[0].id"},
-        {"\"id\": 3", "\"id\": -1", "probes[0].id"},
-        {"\"id\": 3", "\"id\": 2000000001", "probes[0].id"},
-        {"\"id\": 3", "\"id\": true", "probes[0].id"},
-        {"\"name\": \"P\"", "\"name\": 7", "probes[0].name"},
-        {"\"name\": \"P\"", "\"name\": \"a\\nb\"", "probes[0].name"},
-        {"\"name\": \"a.png\"", "\"name\": \"a\\u0000b\"", "image.name"},
-        {"#e69f00", "#E69F00", "probes[0].colour"},
-        {"#e69f00", "#e69f0", "probes[0].colour"},
-        {"#e69f00", "#e69f0g", "probes[0].colour"},
-        {"#e69f00", "e69f000", "probes[0].colour"},
-        {"[1.5, 2]", "[1.5]", "probes[0].rest"},
-        {"[1.5, 2]", "[1.5, 2, 3]", "probes[0].rest"},
-        {"[1.5, 2]", "[1.5, \"2\"]", "probes[0].rest"},
-        {"[1.5, 2]", "{\"x\": 1}", "probes[0].rest"},
-        {"[3, 4]", "[3, 1.1e7]", "probes[0].now"},
-        {"0.25", "1.1e6", "probes[0].angle_radians"},
-        {"0.25", "-1.1e6", "probes[0].angle_radians"},
-        {"\"radius\": 10", "\"radius\": 0", "probes[0].radius"},
-        {"\"radius\": 10", "\"radius\": -10", "probes[0].radius"},
-        {"\"radius\": 10", "\"radius\": 1e-300", "probes[0].radius"},
-        {"\"locked\": false", "\"locked\": 0", "probes[0].locked"},
-        {"\"visible\": true", "\"visible\": \"yes\"", "probes[0].visible"},
-        {"inverse-distance", "magic", "weights"},
-        {"\"dlb\"", "\"lbs\"", "blend"},
-        {"\"dlb\"", "null", "blend"},
-        {"\"file\": \"image.png\"", "\"file\": 3", "image.file"},
-        {"[{\"id\"", "[7, {\"id\"", "probes[0]"},
-        {"\"probes\": [", "\"probes\": {\"a\": [", "JSON"},
-    };
-    for (const auto& c : cases) EXPECT_THAT(refusal_with(c.from, c.to), HasSubstr(c.said)) << c.to;
+    for (const auto& c : wrong_values) EXPECT_THAT(refusal_with(c.from, c.to), HasSubstr(c.said)) << c.to;
     EXPECT_THAT(refusal_with("\"P\"", '"' + std::string(201, 'x') + '"'), HasSubstr("probes[0].name"));
 }
 
 TEST(MalformedProject, NumbersThatAreNone) {
-    for (const char* number : {"NaN", "nan", "Infinity", "-Infinity", "1e999", "-1e999", "0x10", "1.", ".5", "01", "+1", "1e"})
+    for (const char* number :
+         {"NaN", "nan", "Infinity", "-Infinity", "1e999", "-1e999", "0x10", "1.", ".5", "01", "+1", "1e"})
         EXPECT_NE(refusal_with("0.25", number), "") << number;
     EXPECT_THAT(refusal_with("0.25", "1e999"), HasSubstr("number that is too large"));
     EXPECT_THAT(refusal_with("0.25", "NaN"), HasSubstr("not valid JSON"));
@@ -187,13 +195,16 @@ TEST(MalformedProject, NumbersThatAreNone) {
 
 TEST(MalformedProject, AnotherFormat) {
     for (const char* format : {"0", "2", "-1", "1.0", "\"1\"", "null", "18446744073709551617", "4294967297"})
-        EXPECT_THAT(refusal_with("\"format\": 1", std::string("\"format\": ") + format), HasSubstr("reads format 1"))
+        EXPECT_THAT(refusal_with("\"format\": 1", std::string("\"format\": ") + format),
+                    HasSubstr("reads format 1"))
             << format;
 }
 
 TEST(MalformedProject, FieldsAndIdsThatStandTwice) {
-    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"format\": 1"), HasSubstr("the field \"format\" twice"));
-    EXPECT_THAT(refusal_with("\"radius\": 10", "\"radius\": 10, \"radius\": 11"), HasSubstr("the field \"radius\" twice"));
+    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"format\": 1"),
+                HasSubstr("the field \"format\" twice"));
+    EXPECT_THAT(refusal_with("\"radius\": 10", "\"radius\": 10, \"radius\": 11"),
+                HasSubstr("the field \"radius\" twice"));
     EXPECT_THAT(refusal_with("\"format\": 1", "\"a\\nb\": 1, \"a\\nb\": 1"), HasSubstr("\"a?b\" twice"));
     const auto first = good_json.find("{\"id\""), end = good_json.find("]}", first);
     const std::string probe = good_json.substr(first, end - first);
@@ -204,12 +215,13 @@ TEST(MalformedProject, FieldsAndIdsThatStandTwice) {
 }
 
 TEST(MalformedProject, JsonThatIsNone) {
-    for (const std::string json : {"", "{", "[]", "7", "null", "\"x\"", "{}", "{\"format\": 1}", "{} {}", "\xff\xfe{}", "{'a': 1}"}) {
+    for (const std::string json :
+         {"", "{", "[]", "7", "null", "\"x\"", "{}", "{\"format\": 1}", "{} {}", "\xff\xfe{}", "{'a': 1}"}) {
         auto members = good_members();
         members[1].bytes = to_bytes(json);
         EXPECT_THAT(refusal(members), HasSubstr("project.json")) << json;
     }
-    EXPECT_NE(refusal_with("\"P\"", "\"\xff\""), "");    // no UTF-8
+    EXPECT_NE(refusal_with("\"P\"", "\"\xff\""), "");     // no UTF-8
     EXPECT_NE(refusal_with("\"P\"", "\"\\ud800\""), "");  // half a pair
 }
 
@@ -251,7 +263,8 @@ TEST(MalformedProject, PicturesThatAreNone) {
     members[2].bytes.resize(members[2].bytes.size() / 2);
     EXPECT_THAT(refusal(members), HasSubstr("image.png: is truncated"));
     for (const char* other : {"project.json", "mimetype", "../image.png", ""})
-        EXPECT_NE(refusal_with("\"file\": \"image.png\"", std::string("\"file\": \"") + other + "\""), "") << other;
+        EXPECT_NE(refusal_with("\"file\": \"image.png\"", std::string("\"file\": \"") + other + "\""), "")
+            << other;
 }
 
 TEST(MalformedProject, EncryptedMembers) {
@@ -281,7 +294,8 @@ TEST(MalformedProject, Bombs) {
     EXPECT_THAT(refusal(members), HasSubstr("project.json is too long"));
     members[1] = deflated("project.json", zeros, 100);  // says 100 bytes
     EXPECT_THAT(refusal(members), HasSubstr("damaged"));
-    members[1] = deflated("project.json", zeros, std::uint32_t(max_file_bytes) + 1);  // says more than is read
+    members[1] =
+        deflated("project.json", zeros, std::uint32_t(max_file_bytes) + 1);  // says more than is read
     EXPECT_THAT(refusal(members), HasSubstr("holds more than 256 MiB"));
     members = good_members();
     const RawMember packed = deflated("m", zeros, std::uint32_t(zeros.size()));

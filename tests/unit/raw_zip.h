@@ -19,11 +19,11 @@ inline Bytes to_bytes(std::string_view text) {
 
 struct RawMember {
     std::string name;
-    Bytes bytes;                  ///< as they are in the archive: deflated where method is 8
-    unsigned flags = 1u << 11;    ///< the name is UTF-8; bit 0: encrypted
-    unsigned method = 0;          ///< 0 stored, 8 deflated
-    std::uint32_t size = 0;       ///< said to be this long; 0: as long as `bytes`
-    std::uint32_t checksum = 0;   ///< CRC-32; 0: of `bytes`
+    Bytes bytes;                 ///< as they are in the archive: deflated where method is 8
+    unsigned flags = 1u << 11;   ///< the name is UTF-8; bit 0: encrypted
+    unsigned method = 0;         ///< 0 stored, 8 deflated
+    std::uint32_t size = 0;      ///< said to be this long; 0: as long as `bytes`
+    std::uint32_t checksum = 0;  ///< CRC-32; 0: of `bytes`
 };
 
 /// A member that inflates to `content`, and says so unless told to lie.
@@ -52,8 +52,9 @@ inline Bytes raw_zip(const std::vector<RawMember>& members) {
     Bytes archive, directory;
     for (const RawMember& m : members) {
         const std::size_t offset = archive.size();
-        const auto crc = m.checksum ? m.checksum
-                                    : crc32(0, reinterpret_cast<const Bytef*>(m.bytes.data()), uInt(m.bytes.size()));
+        const auto crc = m.checksum
+                             ? m.checksum
+                             : crc32(0, reinterpret_cast<const Bytef*>(m.bytes.data()), uInt(m.bytes.size()));
         const auto put_common = [&](Bytes& out) {
             put(out, 2, m.flags);
             put(out, 2, m.method);

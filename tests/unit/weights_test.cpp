@@ -53,7 +53,8 @@ TEST(Weights, AreWithinNoughtAndOneAtEveryDistance) {
         std::vector<Probe> probes;
         const int count = *whole(1, 6);
         for (int i = 0; i < count; ++i)  // squares underflow below 1e-162 and overflow above 1e154
-            probes.push_back(probe_at({*magnitude(-310, 300), *magnitude(-310, 300)}, std::abs(*magnitude(-310, 300))));
+            probes.push_back(
+                probe_at({*magnitude(-310, 300), *magnitude(-310, 300)}, std::abs(*magnitude(-310, 300))));
         if (*whole(0, 1)) probes[0].rest = {0, 0};
         const auto weights = weights_of(probes, {0, 0});
         for (const float w : weights) RC_ASSERT(w >= 0 && w <= 1);  // false for NaN
