@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "io/printable.h"
 #include "model/deform.h"
 #include "model/weights.h"
 
@@ -43,7 +44,11 @@ void add_render(CLI::App& app, RenderOptions& o) {
     command->add_option("--mesh", o.mesh, "Cells along the longer side")->check(CLI::Range(min_cells, max_cells));
     command->add_option("--weights", o.weights, "Weight scheme")->check(CLI::IsMember(names(weight_schemes())));
     command->add_option("--blend", o.blend, "Blend method")->check(CLI::IsMember(names(blend_methods())));
-    auto* scale = command->add_option("--scale", o.scale, "Exported pixels per image pixel")->check(CLI::Range(1e-4, 1e4));
+    auto* scale = command->add_option("--scale", o.scale, "Exported pixels per image pixel")
+                      ->check([](const std::string& text) {
+                          const double value = std::strtod(text.c_str(), nullptr);  // CLI::Range lets NaN pass
+                          return value >= 1e-4 && value <= 1e4 ? "" : "Value " + text + " not in range 0.0001 to 10000";
+                      });
     command->add_option("--size", o.size, "WxH: fit into exactly this many pixels")->excludes(scale);
     command->add_option("--samples", o.samples, "N x N samples a pixel")->check(CLI::Range(1, 16));
     command->add_option("--canvas", o.canvas, "image: the picture's rectangle; fit: all of the deformed picture")
@@ -64,17 +69,11 @@ void add_info(CLI::App& app, InfoOptions& o) {
 }
 
 int failed(int code, const std::string& message) {
-    fmt::print(stderr, "probewarp: {}\n", one_line(message));
+    fmt::print(stderr, "probewarp: {}\n", printable(message));
     return code;
 }
 
 }  // namespace
-
-std::string one_line(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-    return text;
-}
 
 int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path)) {
     CLI::App app("Probewarp deforms a picture with probes.\nWithout a command it opens a window on FILE.", "probewarp");

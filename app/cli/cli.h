@@ -9,7 +9,4 @@ namespace probewarp {
 /// Returns the exit code: 0, 1 where something failed, 2 where the arguments are wrong.
 int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path));
 
-/// `text` as one line that a terminal can show: control characters become question marks.
-std::string one_line(std::string text);
-
 }  // namespace probewarp

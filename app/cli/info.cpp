@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "cli/cli.h"
 #include "cli/commands.h"
+#include "io/printable.h"
 #include "io/project.h"
 #include "render/context.h"
 
@@ -66,7 +66,7 @@ Json description(const InfoOptions& o) {
 }
 
 void print_text(const Json& json) {
-    const auto text = [&json](const char* field) { return one_line(json[field].get<std::string>()); };
+    const auto text = [&json](const char* field) { return printable(json[field].get<std::string>()); };
     fmt::print("{}: {} ({}), {} x {} pixels, {} bits{}\n", text("file"), text("picture"), text("format"),
                json["width"].get<int>(), json["height"].get<int>(), json["bits"].get<int>(),
                json["alpha"].get<bool>() ? ", with transparency" : "");
@@ -77,7 +77,7 @@ void print_text(const Json& json) {
     fmt::print("probes: {}\n", json["probes"].size());
     for (const Json& p : json["probes"])
         fmt::print("  {}: {:g}, {:g} now at {:g}, {:g}, turned {:g} degrees, reach {:g}\n",
-                   one_line(p["name"].get<std::string>()), p["rest"][0].get<double>(), p["rest"][1].get<double>(),
+                   printable(p["name"].get<std::string>()), p["rest"][0].get<double>(), p["rest"][1].get<double>(),
                    p["now"][0].get<double>(), p["now"][1].get<double>(), p["angle_degrees"].get<double>(),
                    p["radius"].get<double>());
     fmt::print("renderer: {}\n", text("renderer"));

@@ -80,7 +80,22 @@ const ImageFormat* image_format_of(const std::filesystem::path& path) {
     return nullptr;
 }
 
+namespace {
+
+/// The bytes of the file that this thread decodes: they and the pixels are there at once.
+thread_local std::size_t source_bytes = 0;
+
+struct SourceBytes {
+    explicit SourceBytes(std::size_t bytes) { source_bytes = bytes; }
+    ~SourceBytes() { source_bytes = 0; }
+    SourceBytes(const SourceBytes&) = delete;
+    SourceBytes& operator=(const SourceBytes&) = delete;
+};
+
+}  // namespace
+
 Picture decode_picture(std::vector<std::byte> bytes, const std::string& name) {
+    const SourceBytes counted(bytes.size());
     const std::string called = printable(name);
     const ImageFormat* format = recognised_format(bytes, name);
     if (!format)
@@ -103,7 +118,12 @@ Picture read_picture(const std::filesystem::path& path) {
 void check_image_size(long long width, long long height, int bits) {
     const long long sample_bytes = bits / 8;
     const bool sides = width >= 1 && height >= 1 && width <= max_image_side && height <= max_image_side;
-    if (sides && std::size_t(width * height * 4 * sample_bytes) <= max_image_bytes) return;
+    const std::size_t needed = sides ? std::size_t(width * height * 4 * sample_bytes) : 0;
+    if (sides && needed <= max_image_bytes) {
+        if (needed + source_bytes <= max_decoding_bytes) return;
+        throw Error("needs " + std::to_string((needed + source_bytes) >> 20) + " MiB, the file and its pixels; expected at most " +
+                    std::to_string(max_decoding_bytes >> 20));
+    }
     throw Error("is " + std::to_string(width) + " x " + std::to_string(height) + " pixels; expected 1 to " +
                 std::to_string(max_image_side) + " pixels a side and at most " +
                 std::to_string(max_image_bytes / 4 / std::size_t(sample_bytes) / 1000000) +

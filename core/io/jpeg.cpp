@@ -117,8 +117,6 @@ struct Decoder {
         if (!protect(errors, [this] { jpeg_create_decompress(&jpeg); })) throw std::bad_alloc();
         progress.progress_monitor = on_progress;
         jpeg.progress = &progress;
-        // The coefficients of a progressive file: as much as the pixels of the largest picture.
-        jpeg.mem->max_memory_to_use = long(max_image_bytes);
     }
     Decoder(const Decoder&) = delete;
     Decoder& operator=(const Decoder&) = delete;
@@ -142,6 +140,9 @@ void read_header(Decoder& decoder, Bytes bytes) {
         jpeg_read_icc_profile(&decoder.jpeg, &decoder.icc, &decoder.icc_bytes);
     });
     check_image_size(decoder.jpeg.image_width, decoder.jpeg.image_height, 8);
+    // A progressive file's coefficients are there beside its bytes and its pixels.
+    const std::size_t others = bytes.size() + std::size_t(decoder.jpeg.image_width) * decoder.jpeg.image_height * 4;
+    decoder.jpeg.mem->max_memory_to_use = long(max_decoding_bytes - others);
     // The arithmetic decoder makes up zeros without end from no bytes at all, and nobody writes such files.
     if (decoder.jpeg.arith_code) throw Error("is arithmetic-coded; expected a Huffman-coded JPEG file");
 }

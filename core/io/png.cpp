@@ -113,6 +113,9 @@ std::size_t raw_bytes(const spng_ihdr& ihdr) {
 }
 
 void check_plausible(const spng_ihdr& ihdr, std::size_t idat_bytes) {
+    // Deflate never needs much more than what it packs: such a file hides something behind its pixels.
+    if (idat_bytes > raw_bytes(ihdr) + raw_bytes(ihdr) / 8 + 65536)
+        throw damaged("PNG", "more data than its pixels need");
     // Deflate cannot pack more than 1032 bytes into one.
     if (raw_bytes(ihdr) / 1032 > idat_bytes)
         throw damaged("PNG", "it holds too little data for " + std::to_string(ihdr.width) + " x " +

@@ -1,5 +1,5 @@
 // Text for messages out of bytes from outside: a file's name, or a word inside it, may hold anything, and a
-// message goes to terminals and windows. Private to io.
+// message goes to terminals and windows.
 #pragma once
 
 #include <string>

@@ -24,6 +24,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t max_json_bytes = std::size_t{16} << 20;
 constexpr int max_json_depth = 8;
 constexpr std::size_t max_probes = 10000;
+constexpr std::size_t max_json_values = 3 * max_probes + 8;  // a probe is an object and two lists
+constexpr std::size_t max_json_fields = 64;                  // of one object
 
 std::vector<std::byte> to_bytes(std::string_view text) {
     const auto bytes = std::as_bytes(std::span(text));
@@ -34,22 +36,30 @@ std::vector<std::byte> to_bytes(std::string_view text) {
 Json parse(std::span<const std::byte> bytes) {
     if (bytes.size() > max_json_bytes) throw Error("project.json is too long; expected at most 16 MiB");
     std::vector<std::set<std::string>> keys(max_json_depth + 2);
-    const auto watch = [&keys](int depth, Json::parse_event_t event, Json& parsed) {
+    std::size_t values = 0;
+    const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
         if (depth > max_json_depth)
-            throw Error(fmt::format("project.json is nested deeper than {} levels", max_json_depth));
+            throw Error(fmt::format("project.json is nested deeper than expected: at most {} levels", max_json_depth));
+        // The library takes time in the square of these.
+        const bool nests = event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
+        if (nests && ++values > max_json_values)
+            throw Error(fmt::format("project.json holds too much; expected at most {} objects and lists", max_json_values));
         const auto level = std::size_t(depth);
         if (event == Json::parse_event_t::object_start) keys[level + 1].clear();
         if (event == Json::parse_event_t::key && !keys[level].insert(parsed.get<std::string>()).second)
-            throw Error(fmt::format("project.json has the field \"{}\" twice", printable(parsed.get<std::string>().substr(0, 80))));
+            throw Error(fmt::format("project.json has the field \"{}\" twice; expected it once",
+                                    printable(parsed.get<std::string>().substr(0, 80))));
+        if (keys[level].size() > max_json_fields)
+            throw Error(fmt::format("project.json has an object with too many fields; expected at most {}", max_json_fields));
         return true;
     };
     const auto* first = reinterpret_cast<const char*>(bytes.data());
     try {
         return Json::parse(first, first + bytes.size(), watch);
     } catch (const Json::parse_error& error) {
-        throw Error(fmt::format("project.json is not valid JSON at byte {}", error.byte));
+        throw Error(fmt::format("project.json is damaged at byte {}; expected JSON", error.byte));
     } catch (const Json::out_of_range&) {
-        throw Error("project.json has a number that is too large");
+        throw Error("project.json has a number that is too large; expected one that a double can hold");
     }
 }
 
@@ -100,8 +110,8 @@ class Fields {
     void finish() const {
         for (const auto& [key, value] : json_.items())
             if (!taken_.contains(key))
-                throw Error(fmt::format("project.json has the field \"{}\"{}, which this version does not know; it was "
-                                        "written by a later version or by hand",
+                throw Error(fmt::format("project.json has the field \"{}\"{}, which this version does not know; expected "
+                                        "a project of this version",
                                         printable(key.substr(0, 80)), place_.empty() ? "" : " in " + place_));
     }
 
@@ -203,20 +213,21 @@ Parsed parse_project(std::span<const std::byte> bytes) {
     return parsed;
 }
 
-Document decode(std::span<const std::byte> bytes) {
+Document decode(std::vector<std::byte> bytes) {
     std::vector<ZipMember> members = read_zip(bytes, max_file_bytes);
+    bytes = {};  // the picture's pixels need the room
     if (members.empty() || members[0].name != "mimetype" || members[0].bytes != to_bytes(project_mimetype))
         throw Error("is not a Probewarp project; expected a ZIP archive whose first member is its mimetype");
     const auto find = [&members](const std::string& name) {
         const auto found = std::find_if(members.begin(), members.end(), [&](const auto& m) { return m.name == name; });
-        if (found == members.end()) throw Error(fmt::format("has no member {}", name));
+        if (found == members.end()) throw Error(fmt::format("has no member {}; expected it in a project", printable(name)));
         return found;
     };
     Parsed parsed = parse_project(find("project.json")->bytes);
     auto image = find(parsed.image_file);
     for (const ZipMember& member : members)
         if (member.name != "mimetype" && member.name != "project.json" && member.name != parsed.image_file)
-            throw Error(fmt::format("has a member {} that this version does not know", member.name));
+            throw Error(fmt::format("has a member {} that this version does not know; expected a project of this version", member.name));
     Picture picture = decode_picture(std::move(image->bytes), parsed.image_file);
     picture.name = parsed.image_name;
     parsed.document.picture = std::make_shared<const Picture>(std::move(picture));
@@ -245,9 +256,9 @@ std::vector<std::byte> encode_project(const Document& document) {
     return write_zip(members);
 }
 
-Document decode_project(std::span<const std::byte> bytes, const std::string& name) {
+Document decode_project(std::vector<std::byte> bytes, const std::string& name) {
     try {
-        return decode(bytes);
+        return decode(std::move(bytes));
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", printable(name), printable(error.what())));  // names inside may hold anything
     }
@@ -257,7 +268,7 @@ bool is_project(std::span<const std::byte> bytes) { return is_zip(bytes); }
 
 Document read_document(const std::filesystem::path& path) {
     std::vector<std::byte> bytes = read_file(path);
-    if (is_project(bytes)) return decode_project(bytes, path.string());
+    if (is_project(bytes)) return decode_project(std::move(bytes), path.string());
     Document document;
     Picture picture = decode_picture(std::move(bytes), path.string());
     picture.name = one_line(path.filename().string());

@@ -22,7 +22,7 @@ std::vector<std::byte> encode_project(const Document& document);
 
 /// Throws Error: "NAME: what is wrong; what is expected". Fields that this version does not know are refused,
 /// so that saving again never loses what a later version wrote.
-Document decode_project(std::span<const std::byte> bytes, const std::string& name);
+Document decode_project(std::vector<std::byte> bytes, const std::string& name);
 
 /// A document from a file: a project as it was saved, or a picture without probes.
 Document read_document(const std::filesystem::path& path);

@@ -33,13 +33,30 @@ bool stays_inside(const std::string& name) {
     return true;
 }
 
+/// Refuses an archive whose end promises more members than fit, before libzip makes room for them all.
+void check_directory(std::span<const std::byte> bytes) {
+    constexpr std::size_t end_size = 22, longest_comment = 0xffff;
+    const auto byte = [&bytes](std::size_t at) { return std::to_integer<unsigned>(bytes[at]); };
+    const auto is = [&](std::size_t at, unsigned kind, unsigned version) {
+        return byte(at) == 'P' && byte(at + 1) == 'K' && byte(at + 2) == kind && byte(at + 3) == version;
+    };
+    if (bytes.size() < end_size) throw Error("is truncated; expected a whole ZIP archive");
+    const std::size_t first = bytes.size() - std::min(bytes.size(), end_size + longest_comment + 20);
+    for (std::size_t at = first; at + end_size <= bytes.size(); ++at) {
+        const bool large = is(at, 6, 7);  // the locator of a Zip64 directory
+        const unsigned members = is(at, 5, 6) ? byte(at + 10) | byte(at + 11) << 8 : 0;
+        if (large || members > max_zip_members)
+            throw Error(fmt::format("has too many members; expected at most {}", max_zip_members));
+    }
+}
+
 Owned<zip_t> open_for_reading(std::span<const std::byte> bytes) {
     zip_error_t error;
     zip_error_init(&error);
     Owned<zip_source_t> source(zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error));
     Owned<zip_t> archive(source ? zip_open_from_source(source.get(), ZIP_RDONLY | ZIP_CHECKCONS, &error) : nullptr);
     zip_error_fini(&error);
-    if (!archive) throw Error("is a damaged or truncated ZIP archive");
+    if (!archive) throw Error("is damaged or truncated; expected a whole ZIP archive without doubled members");
     source.release();  // the archive owns it now
     return archive;
 }
@@ -50,7 +67,7 @@ std::vector<std::byte> read_member(zip_t* archive, zip_uint64_t index, std::size
     std::byte past{};
     if (!file || zip_fread(file.get(), bytes.data(), size) != zip_int64_t(size) ||
         zip_fread(file.get(), &past, 1) != 0)
-        throw Error(fmt::format("has a damaged member {}", name));
+        throw Error(fmt::format("has a damaged member {}; expected a whole ZIP archive", name));
     return bytes;
 }
 
@@ -62,10 +79,9 @@ bool is_zip(std::span<const std::byte> bytes) {
 }
 
 std::vector<ZipMember> read_zip(std::span<const std::byte> bytes, std::size_t limit) {
+    check_directory(bytes);
     const Owned<zip_t> archive = open_for_reading(bytes);
     const zip_int64_t count = zip_get_num_entries(archive.get(), 0);
-    if (count < 0 || std::size_t(count) > max_zip_members)
-        throw Error(fmt::format("has {} members; expected at most {}", count, max_zip_members));
     std::vector<ZipMember> members;
     std::set<std::string> names;
     std::size_t total = 0;
@@ -73,12 +89,12 @@ std::vector<ZipMember> read_zip(std::span<const std::byte> bytes, std::size_t li
         zip_stat_t stat;
         constexpr zip_uint64_t needed = ZIP_STAT_NAME | ZIP_STAT_SIZE | ZIP_STAT_COMP_METHOD | ZIP_STAT_ENCRYPTION_METHOD;
         if (zip_stat_index(archive.get(), i, ZIP_FL_ENC_GUESS, &stat) != 0 || (stat.valid & needed) != needed)
-            throw Error("is a damaged ZIP archive");
+            throw Error("is damaged; expected a whole ZIP archive");
         const std::string name = stat.name;
-        if (!stays_inside(name)) throw Error("has a member whose name points out of the archive");
-        if (!names.insert(name).second) throw Error(fmt::format("has two members named {}", name));
-        if (stat.encryption_method != ZIP_EM_NONE) throw Error(fmt::format("has an encrypted member {}", name));
-        if (stat.size > limit - total) throw Error(fmt::format("holds more than {} MiB", limit >> 20));
+        if (!stays_inside(name)) throw Error("has a member whose name points out of the archive; expected names inside it");
+        if (!names.insert(name).second) throw Error(fmt::format("has two members named {}; expected one", name));
+        if (stat.encryption_method != ZIP_EM_NONE) throw Error(fmt::format("has an encrypted member {}; expected none", name));
+        if (stat.size > limit - total) throw Error(fmt::format("holds more than expected: at most {} MiB", limit >> 20));
         total += std::size_t(stat.size);
         members.push_back({name, read_member(archive.get(), i, std::size_t(stat.size), name),
                            stat.comp_method == ZIP_CM_STORE});

@@ -16,6 +16,8 @@ namespace probewarp {
 /// No side longer than this, and no picture whose RGBA takes more than this many bytes: readers refuse it.
 inline constexpr int max_image_side = 32768;
 inline constexpr std::size_t max_image_bytes = std::size_t{384} << 20;
+/// Nor one that would take more than this together with the file it is read from.
+inline constexpr std::size_t max_decoding_bytes = std::size_t{448} << 20;
 
 /// Pixels per metre, as PNG's pHYs has it.
 struct Resolution {

@@ -269,6 +269,7 @@ TEST(ImageFile, PngBombsAndLies) {
     const File bomb = deflate_bomb(1024);
     expect_refused(small_png(png_chunk("iCCP", join({bytes_of("x"), bytes({0, 0}), bomb})), idat), "a.png",
                    "is damaged");
+    expect_refused(small_png({}, bomb), "a.png", "more data than its pixels need");
     const File text = small_png(png_chunk("zTXt", join({bytes_of("x"), bytes({0, 0}), bomb})), idat);
     const auto start = std::chrono::steady_clock::now();
     EXPECT_EQ(pixels(decode(text)).size(), 4u) << "text does not matter";

@@ -1,0 +1,172 @@
+"""Small sound files of every format, built by hand or, where that is long work, by the program under test.
+The tests break them one by one; what is whole here is opened first, so that a refusal means something."""
+
+import io
+import json
+import os
+import struct
+import zipfile
+import zlib
+
+
+def png_chunk(kind, data):
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def png_header(width, height, bits=8, colour=6, interlaced=0):
+    return b"\x89PNG\r\n\x1a\n" + png_chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, colour, 0, 0, interlaced))
+
+
+def png(width, height, bits=8, colour=6, interlaced=0, extra=b"", seed=7):
+    """Pixels that do not compress much, so that the file is not all headers."""
+    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[colour]
+    passes = [(0, 0, 1, 1)]
+    if interlaced:
+        passes = [(0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2)]
+    rows = bytearray()
+    for left, top, right, down in passes:
+        columns = len(range(left, width, right))
+        for _ in range(top, height, down) if columns else ():
+            rows.append(0)
+            for _ in range((columns * channels * bits + 7) // 8):
+                seed = (seed * 1103515245 + 12345) & 0x7FFFFFFF
+                rows.append(seed >> 16 & (0x33 if colour == 3 else 0xFF))
+    if colour == 3:
+        extra += png_chunk(b"PLTE", bytes(range(4 * 3))) + png_chunk(b"tRNS", b"\x00\x80")
+    return (png_header(width, height, bits, colour, interlaced) + extra + png_chunk(b"IDAT", zlib.compress(bytes(rows)))
+            + png_chunk(b"IEND", b""))
+
+
+def bmp(width, height, bits=24):
+    palette = bytes(range(16)) if bits == 8 else b""
+    row = bytes(i % 4 for i in range(width * bits // 8))
+    pixels = (row + bytes(-len(row) % 4)) * abs(height)
+    start = 54 + len(palette)
+    return (b"BM" + struct.pack("<IHHI", start + len(pixels), 0, 0, start)
+            + struct.pack("<IiiHHIIIIII", 40, width, height, 1, bits, 0, len(pixels), 2835, 2835, len(palette) // 4, 0)
+            + palette + pixels)
+
+
+def tga(width, height, packed=False):
+    header = struct.pack("<BBBHHBHHHHBB", 0, 0, 10 if packed else 2, 0, 0, 0, 0, 0, width, height, 24, 0x20)
+    if packed:
+        return header + (bytes([0x80 | (width - 1)]) + b"\x10\x80\xf0") * height
+    return header + bytes(i * 11 & 255 for i in range(width * height * 3))
+
+
+def gif(width, height):
+    """Nine-bit codes, with a clear code before the table would grow."""
+    codes = []
+    for i in range(width * height):
+        codes += [256] * (i % 100 == 0) + [i % 4]
+    bits = 0
+    for i, code in enumerate(codes + [257]):
+        bits |= code << (9 * i)
+    data = bits.to_bytes(((len(codes) + 1) * 9 + 7) // 8, "little")
+    blocks = b"".join(bytes([len(data[i:i + 255])]) + data[i:i + 255] for i in range(0, len(data), 255))
+    return (b"GIF89a" + struct.pack("<HHBBB", width, height, 0x81, 0, 0) + bytes(range(12))
+            + b"\x21\xf9\x04\x01\x00\x00\x03\x00" + b"\x2c" + struct.pack("<HHHHB", 0, 0, width, height, 0)
+            + b"\x08" + blocks + b"\x00\x3b")
+
+
+def psd(width, height, packed=False, bits=8):
+    header = b"8BPS" + struct.pack(">H6xHIIHH", 1, 3, height, width, bits, 3) + struct.pack(">III", 0, 0, 0)
+    if packed:
+        row = struct.pack("BB", 257 - width, 90)
+        return header + struct.pack(">H", 1) + struct.pack(">H", len(row)) * height * 3 + row * height * 3
+    return header + struct.pack(">H", 0) + bytes(i * 7 & 255 for i in range(width * height * 3 * bits // 8))
+
+
+PNM = {
+    "p1.pbm": b"P1 4 3\n0110 1001 0110",
+    "p2.pgm": b"P2 2 2 255\n0 80 160 255\n",
+    "p3.ppm": b"P3\n# a comment\n2 1 255\n255 0 0 0 255 0\n",
+    "p4.pbm": b"P4 9 3\n\x00\x80\x55\x00\xff\x80",
+    "p5.pgm": b"P5 3 2 255\nabcdef",
+    "p5-16.pgm": b"P5 2 2 65535\nabcdefgh",
+    "p6.ppm": b"P6 2 2 255\nabcdefghijkl",
+}
+
+MIMETYPE = b"application/x-probewarp"
+PIXEL = PNM["p6.ppm"]
+
+
+def fields():
+    """project.json of a small project, as a value to be changed."""
+    probe = {"id": 1, "name": "Probe 1", "colour": "#e69f00", "rest": [1.0, 1.0], "now": [2.0, 2.0],
+             "angle_radians": 0.5, "radius": 1.0, "locked": False, "visible": True}
+    return {"format": 1, "image": {"file": "image.ppm", "name": "a.ppm"}, "mesh": {"cells": 4},
+            "weights": "inverse-distance", "blend": "dlb", "probes": [probe, dict(probe, id=2, rest=[0.0, 0.0])]}
+
+
+def project_of(text, image=PIXEL, image_name="image.ppm"):
+    """A project around the text of its project.json."""
+    return archive([("mimetype", MIMETYPE), ("project.json", text if isinstance(text, bytes) else text.encode()),
+                    (image_name, image)])
+
+
+def project(**changes):
+    return project_of(json.dumps(dict(fields(), **changes)))
+
+
+def archive(members, method=zipfile.ZIP_STORED):
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", method) as z:
+        for name, data in members:
+            # A ZipInfo, so that names go in as they are.
+            info = zipfile.ZipInfo("x", (1980, 1, 1, 0, 0, 0))
+            info.filename, info.compress_type = name, method
+            z.writestr(info, data)
+    return out.getvalue()
+
+
+def zip_records(members, crc=None, count=None):
+    """A ZIP by hand, to lie in: members are (name, packed bytes, method, packed size, size, crc, flags)."""
+    out, directory = bytearray(), bytearray()
+    for name, data, method, packed, size, check, flags in members:
+        common = struct.pack("<HHHHHIIIHH", 20, flags, method, 0, 0x21, check, packed, size, len(name), 0)
+        directory += b"PK\x01\x02" + struct.pack("<H", 20) + common + struct.pack("<HHHII", 0, 0, 0, 0, len(out)) + name
+        out += b"PK\x03\x04" + common + name + data
+    number = len(members) if count is None else count
+    return bytes(out + directory + b"PK\x05\x06" + struct.pack("<HHHHIIH", 0, 0, number, number, len(directory), len(out), 0))
+
+
+def record(name, data, size=None, packed=None, check=None, flags=0, method=0, raw=None):
+    """One member for zip_records, honest where nothing is said."""
+    stored = data if raw is None else raw
+    return (name, stored, method, len(stored) if packed is None else packed, len(data) if size is None else size,
+            zlib.crc32(data) if check is None else check, flags)
+
+
+def deflated_zeros(total, container=zlib.MAX_WBITS):
+    """`total` zeros, packed, without ever holding them; the checksum too. container: as zlib's wbits."""
+    packer, block, crc, out = zlib.compressobj(9, zlib.DEFLATED, container), bytes(1 << 20), 0, []
+    for _ in range(total >> 20):
+        out.append(packer.compress(block))
+        crc = zlib.crc32(block, crc)
+    return b"".join(out) + packer.flush(), crc
+
+
+def sound(program, folder):
+    """Every small sound file: a list of (name, bytes)."""
+    made = [
+        ("rgba8.png", png(5, 4)), ("grey8.png", png(6, 5, 8, 0)), ("rgb16.png", png(4, 3, 16, 2)),
+        ("rgba16.png", png(3, 3, 16, 6)), ("palette.png", png(6, 4, 2, 3)), ("interlaced.png", png(7, 6, 8, 2, 1)),
+        ("bits.png", png(9, 4, 1, 0)),
+        ("rgb.bmp", bmp(5, 3)), ("down.bmp", bmp(3, -2)), ("palette.bmp", bmp(5, 3, 8)),
+        ("raw.tga", tga(5, 4)), ("packed.tga", tga(9, 5, True)),
+        ("small.gif", gif(12, 10)), ("raw.psd", psd(5, 3)), ("packed.psd", psd(9, 3, True)), ("deep.psd", psd(3, 2, bits=16)),
+        ("hand.probewarp", project()),
+    ] + list(PNM.items())
+    source = os.path.join(folder, "source.png")
+    with open(source, "wb") as f:
+        f.write(png(9, 8))
+    for name in "made.jpg", "made.bmp", "made.tga", "made.png", "made.probewarp":
+        path = os.path.join(folder, name)
+        result = program.run("render", source, "--probe", "2,2:3,4,20", "-o", path, "--backend", "osmesa")
+        assert result.code == 0, f"{name} could not be made: {result}"
+        with open(path, "rb") as f:
+            made.append((name, f.read()))
+        os.unlink(path)
+    os.unlink(source)
+    return made

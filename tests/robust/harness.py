@@ -1,0 +1,116 @@
+"""Runs the real program under watch: exit code, what it said, the time and the memory it took."""
+
+import ctypes
+import os
+import resource
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+import unicodedata
+from dataclasses import dataclass
+
+HANGS = 10  # seconds after which a run is killed: it hangs
+
+
+@dataclass
+class Result:
+    code: int  # negative: killed by that signal
+    out: bytes
+    err: bytes
+    seconds: float
+    mib: float  # the peak of its resident memory
+
+    def __str__(self):
+        return (f"exit code {self.code}, {self.seconds:.2f} s, {self.mib:.0f} MiB, stdout {self.out[:200]!r}, "
+                f"stderr {self.err[:600]!r}")
+
+
+def without_privileges():
+    """Runs in the child: takes the right to pass over file permissions away from root. Changes nothing for others."""
+    PR_CAPBSET_DROP, CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH = 24, 1, 2
+    libc = ctypes.CDLL(None)
+    for capability in CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH:
+        libc.prctl(PR_CAPBSET_DROP, capability, 0, 0, 0)
+
+
+class Program:
+    def __init__(self, path):
+        self.path = os.path.abspath(path)
+        self.runs = 0
+        self.slowest = self.largest = None
+        self.out, self.err = tempfile.TemporaryFile(), tempfile.TemporaryFile()
+
+    def start(self, *arguments, env=None, preexec=None, restore_signals=True, cwd=None):
+        for file in self.out, self.err:
+            file.seek(0)
+            file.truncate()
+        settings = {k: v for k, v in os.environ.items() if k not in ("PROBEWARP_BACKEND", "DISPLAY", "WAYLAND_DISPLAY")}
+        settings.update(env or {})
+        return subprocess.Popen([self.path, *map(os.fsencode, arguments)], stdin=subprocess.DEVNULL, stdout=self.out,
+                                stderr=self.err, env=settings, preexec_fn=preexec, restore_signals=restore_signals,
+                                cwd=cwd)
+
+    def run(self, *arguments, **settings):
+        start = time.monotonic()
+        process = self.start(*arguments, **settings)
+        watchdog = threading.Timer(HANGS, os.kill, (process.pid, signal.SIGKILL))
+        watchdog.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        watchdog.cancel()
+        seconds = time.monotonic() - start
+        process.returncode = os.waitstatus_to_exitcode(status)
+        for file in self.out, self.err:
+            file.seek(0)
+        result = Result(process.returncode, self.out.read(1 << 20), self.err.read(1 << 20), seconds, usage.ru_maxrss / 1024)
+        self.runs += 1
+        return result
+
+    def measured(self, *arguments, limit, **settings):
+        """As run. One that took too long is run twice more and the quickest counts: the machine may have been busy."""
+        result = self.run(*arguments, **settings)
+        for _ in range(2):
+            if result.seconds < limit or result.seconds >= HANGS:
+                break
+            again = self.run(*arguments, **settings)
+            if again.seconds < result.seconds:
+                result = again
+        if not self.slowest or result.seconds > self.slowest[0]:
+            self.slowest = result.seconds, arguments
+        if not self.largest or result.mib > self.largest[0]:
+            self.largest = result.mib, arguments
+        return result
+
+
+def one_line(err):
+    """What is wrong with these bytes as the one line of a message; None where nothing is."""
+    try:
+        text = err.decode("utf-8")
+    except UnicodeDecodeError:
+        return "is not UTF-8"
+    if text.count("\n") != 1 or not text.endswith("\n"):
+        return "is not exactly one line"
+    if any(unicodedata.category(c) == "Cc" for c in text[:-1]):
+        return "has control characters"
+    if not text.startswith("probewarp: "):
+        return "does not begin with 'probewarp: '"
+    if len(text) > 6000:
+        return "is endless"
+    return None
+
+
+def files_in(folder):
+    """Every file below the folder, with what shows that it was touched."""
+    found = {}
+    for place, folders, files in os.walk(folder):
+        for name in folders + files:
+            path = os.path.join(place, name)
+            status = os.lstat(path)
+            found[os.path.relpath(path, folder)] = (status.st_mode, status.st_ino, status.st_size, status.st_mtime_ns)
+    return found
+
+
+def limit_file_size(size):
+    """Runs in the child: writing beyond `size` bytes fails."""
+    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
