@@ -30,9 +30,10 @@ std::vector<double> numbers(std::string_view text) {
 
 Probe parse_probe(const std::string& text, const Document& document) {
     const auto wrong = [&text] {
-        return UsageError(fmt::format("--probe {}: expected RX,RY[:X,Y[,DEG[,RADIUS]]] in image pixels and degrees, "
-                                      "with a radius above 0",
-                                      text));
+        return UsageError(
+            fmt::format("--probe {}: expected RX,RY[:X,Y[,DEG[,RADIUS]]] in image pixels and degrees, "
+                        "with a radius above 0",
+                        text));
     };
     const std::size_t colon = text.find(':');
     const auto rest = numbers(std::string_view(text).substr(0, colon));

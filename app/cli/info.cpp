@@ -61,7 +61,8 @@ Json description(const InfoOptions& o) {
               {"cancelled_vertices", deformation.cancelled},
               {"probes", std::move(probes)},
               {"renderer", renderer_of(o.backend)}};
-    if (picture.image.resolution) json["pixels_per_metre"] = {picture.image.resolution->x, picture.image.resolution->y};
+    if (picture.image.resolution)
+        json["pixels_per_metre"] = {picture.image.resolution->x, picture.image.resolution->y};
     return json;
 }
 
@@ -70,16 +71,16 @@ void print_text(const Json& json) {
     fmt::print("{}: {} ({}), {} x {} pixels, {} bits{}\n", text("file"), text("picture"), text("format"),
                json["width"].get<int>(), json["height"].get<int>(), json["bits"].get<int>(),
                json["alpha"].get<bool>() ? ", with transparency" : "");
-    fmt::print("mesh: {} x {} cells, {} vertices\n", json["mesh"]["columns"].get<int>(), json["mesh"]["rows"].get<int>(),
-               json["mesh"]["vertices"].get<std::size_t>());
+    fmt::print("mesh: {} x {} cells, {} vertices\n", json["mesh"]["columns"].get<int>(),
+               json["mesh"]["rows"].get<int>(), json["mesh"]["vertices"].get<std::size_t>());
     fmt::print("weights: {}; blend: {}; vertices whose weights cancel: {}\n", text("weights"), text("blend"),
                json["cancelled_vertices"].get<std::size_t>());
     fmt::print("probes: {}\n", json["probes"].size());
     for (const Json& p : json["probes"])
         fmt::print("  {}: {:g}, {:g} now at {:g}, {:g}, turned {:g} degrees, reach {:g}\n",
-                   printable(p["name"].get<std::string>()), p["rest"][0].get<double>(), p["rest"][1].get<double>(),
-                   p["now"][0].get<double>(), p["now"][1].get<double>(), p["angle_degrees"].get<double>(),
-                   p["radius"].get<double>());
+                   printable(p["name"].get<std::string>()), p["rest"][0].get<double>(),
+                   p["rest"][1].get<double>(), p["now"][0].get<double>(), p["now"][1].get<double>(),
+                   p["angle_degrees"].get<double>(), p["radius"].get<double>());
     fmt::print("renderer: {}\n", text("renderer"));
 }
 

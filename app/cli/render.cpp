@@ -31,7 +31,8 @@ struct OutputFormat {
 OutputFormat output_format(const RenderOptions& o) {
     if (o.output == "-" && o.format.empty()) throw UsageError("-o -: expected --format with it");
     std::string ending = std::filesystem::path(o.output).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) { return char(std::tolower(c)); });
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](char c) { return char(std::tolower(c)); });
     if (o.format == "obj" || (o.format.empty() && ending == ".obj")) return {Kind::mesh};
     if (o.format == "probewarp" || (o.format.empty() && ending == project_extension)) return {Kind::project};
     const ImageFormat* format = o.format.empty() ? image_format_of(o.output) : find_image_format(o.format);
@@ -95,14 +96,16 @@ class Progress {
 
 Image rendered(const Document& document, const Deformation& deformation, const ExportSettings& settings,
                const RenderOptions& o) {
-    export_view(document, deformation, settings);  // refuses a size that is too large before anything is opened
+    export_view(document, deformation,
+                settings);  // refuses a size that is too large before anything is opened
     Progress progress(o.quiet);
     const auto context = open_context(o.backend);
     Renderer renderer;
     renderer.set_picture(upload_picture(document.picture->image));
     renderer.set_mesh(deformation.mesh);
     if (o.deform == "shader")
-        renderer.set_blend(deformation.weights, deformation.transformations, glm::vec2(centre(document.picture->image)));
+        renderer.set_blend(deformation.weights, deformation.transformations,
+                           glm::vec2(centre(document.picture->image)));
     else
         renderer.set_positions(deformation.now);
     ExportJob job(renderer, document, deformation, settings);
@@ -126,7 +129,8 @@ void render(const RenderOptions& o) {
     const ExportSettings settings = export_settings(o);
     const Document document = document_of(o);
     std::error_code ignored;
-    if (format.kind != Kind::project && o.output != "-" && std::filesystem::equivalent(o.input, o.output, ignored))
+    if (format.kind != Kind::project && o.output != "-" &&
+        std::filesystem::equivalent(o.input, o.output, ignored))
         throw UsageError(fmt::format("-o {}: this is the input itself; expected another file", o.output));
     if (format.kind == Kind::project) return write_output(o.output, encode_project(document));
 

@@ -95,17 +95,34 @@ constexpr Command all[] = {
     {"Edit", "Unselect", {}, &needs_probe, [](Editor& e) { e.selected = 0; }, true},
     {"Probe", "Delete", {key_delete}, &needs_probe, &delete_probe},
     {"Probe", "Duplicate", {'D', true}, &needs_probe, &duplicate_probe},
-    {"Probe", "Lock", {'L', true}, &needs_probe, &toggle_lock, false,
-     [](const Editor& e) { return find_probe(e.document, e.selected) && find_probe(e.document, e.selected)->locked; }},
+    {"Probe",
+     "Lock",
+     {'L', true},
+     &needs_probe,
+     &toggle_lock,
+     false,
+     [](const Editor& e) {
+         return find_probe(e.document, e.selected) && find_probe(e.document, e.selected)->locked;
+     }},
     {"Probe", "Put back to rest", {'R', true}, &needs_unlocked, &reset_probe, true},
     {"Probe", "Reset the pose of all", {'R', true, true}, &needs_pose, &reset_pose},
     {"View", "Fit", {'F'}, &needs_picture, &show_whole},
     {"View", "100 %", {'1'}, &needs_picture, &show_actual},
     {"View", "Zoom in", {'='}, &needs_picture, &zoom_in},
     {"View", "Zoom out", {'-'}, &needs_picture, &zoom_out},
-    {"View", "Show probes", {'H'}, nullptr, [](Editor& e) { e.show_probes = !e.show_probes; }, true,
+    {"View",
+     "Show probes",
+     {'H'},
+     nullptr,
+     [](Editor& e) { e.show_probes = !e.show_probes; },
+     true,
      [](const Editor& e) { return e.show_probes; }},
-    {"View", "Show mesh", {'M'}, nullptr, [](Editor& e) { e.show_mesh = !e.show_mesh; }, false,
+    {"View",
+     "Show mesh",
+     {'M'},
+     nullptr,
+     [](Editor& e) { e.show_mesh = !e.show_mesh; },
+     false,
      [](const Editor& e) { return e.show_mesh; }},
     {"View", "Light theme", {}, nullptr, &ask<Request::switch_theme>, true},
     {"Help", "About Probewarp", {}, nullptr, &ask<Request::about>},
@@ -133,7 +150,8 @@ std::span<const Command> commands() { return all; }
 std::span<const Alias> aliases() { return second_keys; }
 
 const Command& find_command(std::string_view label) {
-    const auto found = std::find_if(std::begin(all), std::end(all), [&](const Command& c) { return c.label == label; });
+    const auto found =
+        std::find_if(std::begin(all), std::end(all), [&](const Command& c) { return c.label == label; });
     assert(found != std::end(all));
     return *found;
 }
@@ -170,11 +188,20 @@ bool press_key(Editor& editor, const Shortcut& key) {
         }
     const double step = key.shift ? 10 : 1;
     switch (key.key) {
-        case key_left: nudge(editor, {-step, 0}); return true;
-        case key_right: nudge(editor, {step, 0}); return true;
-        case key_up: nudge(editor, {0, -step}); return true;
-        case key_down: nudge(editor, {0, step}); return true;
-        default: return false;
+        case key_left:
+            nudge(editor, {-step, 0});
+            return true;
+        case key_right:
+            nudge(editor, {step, 0});
+            return true;
+        case key_up:
+            nudge(editor, {0, -step});
+            return true;
+        case key_down:
+            nudge(editor, {0, step});
+            return true;
+        default:
+            return false;
     }
 }
 

@@ -10,7 +10,15 @@
 namespace probewarp {
 
 /// Keys as their upper-case ASCII, and these.
-enum Key : int { key_backspace = 8, key_escape = 27, key_delete = 127, key_left = 256, key_right, key_up, key_down };
+enum Key : int {
+    key_backspace = 8,
+    key_escape = 27,
+    key_delete = 127,
+    key_left = 256,
+    key_right,
+    key_up,
+    key_down
+};
 
 struct Shortcut {
     int key = 0;  ///< 0: none

@@ -111,7 +111,8 @@ double distance(glm::dvec2 a, glm::dvec2 b) { return std::hypot(a.x - b.x, a.y -
 Part part_at(const Editor& editor, const Probe& probe, glm::dvec2 at) {
     const double reach = (knob_radius + 4) * editor.scale;
     if (distance(at, knob_position(editor, probe)) <= reach) return Part::knob;
-    if (distance(at, to_canvas(editor.view, probe.now)) <= (disc_radius + 2) * editor.scale) return Part::disc;
+    if (distance(at, to_canvas(editor.view, probe.now)) <= (disc_radius + 2) * editor.scale)
+        return Part::disc;
     return Part::none;
 }
 
@@ -127,7 +128,8 @@ Hit hit_test(const Editor& editor, glm::dvec2 at) {
         if (const Part part = part_at(editor, *probe, at); probe->visible && part != Part::none)
             return {part, probe->id};
     if (chosen && chosen->visible) {
-        const double off = distance(at, to_canvas(editor.view, chosen->now)) - chosen->radius * editor.view.zoom;
+        const double off =
+            distance(at, to_canvas(editor.view, chosen->now)) - chosen->radius * editor.view.zoom;
         if (std::abs(off) <= 4 * editor.scale) return {Part::reach, chosen->id};
     }
     return {};

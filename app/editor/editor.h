@@ -1,5 +1,6 @@
-// The editor: what a person is doing to a document, without a window. It takes pointer and key events as plain
-// structs and knows neither the toolkit nor the file system; what it needs from them it asks for by a Request.
+// The editor: what a person is doing to a document, without a window. It takes pointer and key events as
+// plain structs and knows neither the toolkit nor the file system; what it needs from them it asks for by a
+// Request.
 #pragma once
 
 #include <array>
@@ -38,12 +39,12 @@ struct Gesture {
     enum class Kind { pan, move, turn, reach, field } kind = Kind::pan;
     Document before;
     int probe = 0;
-    PointerEvent pressed;       ///< what began it
-    glm::dvec2 last{0};         ///< canvas pixels: where the pointer was at the last event
-    glm::dvec2 start_corner{0}; ///< pan: the view's corner then
-    double raw_angle = 0;       ///< turn: radians, unwrapped, before snapping
-    std::string label;          ///< of the step it becomes
-    bool moved = false;         ///< further than a click may tremble
+    PointerEvent pressed;        ///< what began it
+    glm::dvec2 last{0};          ///< canvas pixels: where the pointer was at the last event
+    glm::dvec2 start_corner{0};  ///< pan: the view's corner then
+    double raw_angle = 0;        ///< turn: radians, unwrapped, before snapping
+    std::string label;           ///< of the step it becomes
+    bool moved = false;          ///< further than a click may tremble
 };
 
 /// What the editor asks of its surroundings.
@@ -70,7 +71,7 @@ struct Editor {
 
     CanvasView view;
     glm::dvec2 canvas_size{0};
-    double scale = 1;  ///< screen pixels per pixel of the design
+    double scale = 1;        ///< screen pixels per pixel of the design
     bool fit_wanted = true;  ///< the whole picture is to be shown, until it is zoomed or panned
 
     const Tool* tool = nullptr;

@@ -13,15 +13,20 @@ void press_select(Editor& editor, const PointerEvent& event) {
         return;
     }
     switch (hit.part) {
-        case Part::disc: begin(editor, Gesture::Kind::move, event, "Move " + probe->name).probe = probe->id; break;
-        case Part::reach: begin(editor, Gesture::Kind::reach, event, "Reach of " + probe->name).probe = probe->id; break;
+        case Part::disc:
+            begin(editor, Gesture::Kind::move, event, "Move " + probe->name).probe = probe->id;
+            break;
+        case Part::reach:
+            begin(editor, Gesture::Kind::reach, event, "Reach of " + probe->name).probe = probe->id;
+            break;
         case Part::knob: {
             Gesture& gesture = begin(editor, Gesture::Kind::turn, event, "Turn " + probe->name);
             gesture.probe = probe->id;
             gesture.raw_angle = probe->angle;
             break;
         }
-        case Part::none: break;
+        case Part::none:
+            break;
     }
 }
 

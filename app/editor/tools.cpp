@@ -8,16 +8,19 @@ namespace probewarp {
 
 std::span<const Tool> tools() {
     static constexpr std::array<Tool, 3> all{
-        {{"select", "Move and turn probes", "Double-click adds a probe · drag moves · knob turns", 'V', &press_select,
+        {{"select", "Move and turn probes", "Double-click adds a probe · drag moves · knob turns", 'V',
+          &press_select, nullptr},
+         {"add", "Add a probe", "Click the picture to put a probe · keep holding to move it", 'A', &press_add,
           nullptr},
-         {"add", "Add a probe", "Click the picture to put a probe · keep holding to move it", 'A', &press_add, nullptr},
-         {"zoom", "Zoom and pan", "Click zooms in · Alt+click zooms out · drag pans", 'Z', &press_zoom, &click_zoom}}};
+         {"zoom", "Zoom and pan", "Click zooms in · Alt+click zooms out · drag pans", 'Z', &press_zoom,
+          &click_zoom}}};
     return all;
 }
 
 const Tool& find_tool(std::string_view name) {
     const auto all = tools();
-    const auto found = std::find_if(all.begin(), all.end(), [&](const Tool& tool) { return tool.name == name; });
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Tool& tool) { return tool.name == name; });
     assert(found != all.end());
     return *found;
 }

@@ -19,7 +19,8 @@ glm::dvec2 to_image(const CanvasView& view, glm::dvec2 canvas_point);
 /// Zooms by `factor` (within the limits) and keeps what is under `fixed` (canvas pixels) where it is.
 void zoom_at(CanvasView& view, glm::dvec2 fixed, double factor);
 
-/// The whole image in the middle of the canvas with a margin, never larger than `most` canvas pixels per image pixel.
+/// The whole image in the middle of the canvas with a margin, never larger than `most` canvas pixels per
+/// image pixel.
 CanvasView fitted(glm::dvec2 image_size, glm::dvec2 canvas_size, double margin, double most);
 
 }  // namespace probewarp

@@ -32,20 +32,21 @@ fs::path usual_folder(const App& app) {
 }
 
 void open_now(App& app, const fs::path& path) {
-    start_job(app, fmt::format("Opening {}", path.filename().string()), true, [path]() -> std::function<void(App&)> {
-        auto document = std::make_shared<Document>(read_document(path));
-        std::error_code ignored;
-        const fs::path whole = fs::absolute(path, ignored);
-        return [document, whole](App& a) {
-            try {
-                check_texture_size(document->picture->image);
-            } catch (const Error& error) {
-                return say(a, Tone::error, fmt::format("{}: {}", whole.string(), error.what()));
-            }
-            const bool project = whole.extension() == project_extension;
-            start(a.editor, std::move(*document), project ? whole : fs::path(), true);
-        };
-    });
+    start_job(app, fmt::format("Opening {}", path.filename().string()), true,
+              [path]() -> std::function<void(App&)> {
+                  auto document = std::make_shared<Document>(read_document(path));
+                  std::error_code ignored;
+                  const fs::path whole = fs::absolute(path, ignored);
+                  return [document, whole](App& a) {
+                      try {
+                          check_texture_size(document->picture->image);
+                      } catch (const Error& error) {
+                          return say(a, Tone::error, fmt::format("{}: {}", whole.string(), error.what()));
+                      }
+                      const bool project = whole.extension() == project_extension;
+                      start(a.editor, std::move(*document), project ? whole : fs::path(), true);
+                  };
+              });
 }
 
 void save_to(App& app, fs::path path, std::function<void(App&)> then) {
@@ -66,7 +67,8 @@ void save_to(App& app, fs::path path, std::function<void(App&)> then) {
 void save_as(App& app, std::function<void(App&)> then = {}) {
     fs::path proposed = app.editor.path;
     if (proposed.empty())
-        proposed = usual_folder(app) / fs::path(app.editor.document.picture->name).replace_extension(project_extension);
+        proposed = usual_folder(app) /
+                   fs::path(app.editor.document.picture->name).replace_extension(project_extension);
     ask_for_file(app, "Save the project", "Save", true, {project_extension}, proposed,
                  [then = std::move(then)](App& a, const fs::path& path) { save_to(a, path, then); });
 }
@@ -85,13 +87,11 @@ void open_dialog(App& app) {
                  [](App& a, const fs::path& path) { open_now(a, path); });
 }
 
-void new_document(App& app) {
-    start(app.editor, {}, {}, true);
-}
+void new_document(App& app) { start(app.editor, {}, {}, true); }
 
 void replace_picture_dialog(App& app) {
-    ask_for_file(app, "Put another picture under the probes", "Replace", false, picture_endings(), usual_folder(app),
-                 [](App& app_now, const fs::path& path) {
+    ask_for_file(app, "Put another picture under the probes", "Replace", false, picture_endings(),
+                 usual_folder(app), [](App& app_now, const fs::path& path) {
                      start_job(app_now, fmt::format("Opening {}", path.filename().string()), true,
                                [path]() -> std::function<void(App&)> {
                                    auto picture = std::make_shared<const Picture>(read_picture(path));
@@ -155,11 +155,10 @@ std::string document_name(const App& app) {
 
 void after_saving(App& app, const char* what, std::function<void(App&)> then) {
     if (!has_picture(app.editor) || is_saved(app.editor.history)) return then(app);
-    app.questions.push_back({"Unsaved changes",
-                             fmt::format("{} has changes that are not saved. Save them before {}?", document_name(app), what),
-                             {{"Save", [then](App& a) { save(a, then); }},
-                              {"Throw away", then},
-                              {"Cancel", {}}}});
+    app.questions.push_back(
+        {"Unsaved changes",
+         fmt::format("{} has changes that are not saved. Save them before {}?", document_name(app), what),
+         {{"Save", [then](App& a) { save(a, then); }}, {"Throw away", then}, {"Cancel", {}}}});
     app.wake();
 }
 
@@ -171,10 +170,12 @@ void export_to(App& app, const fs::path& path) {
     const ImageFormat* format = image_format_of(path);
     if (path.extension() == ".obj") {
         const std::string text = encode_obj(app.editor.document, app.editor.deformation);
-        start_job(app, fmt::format("Exporting {}", path.filename().string()), true, [path, text]() -> std::function<void(App&)> {
-            write_file(path, std::as_bytes(std::span(text)));
-            return [path](App& a) { say(a, Tone::done, fmt::format("Exported {}.", path.string())); };
-        });
+        start_job(app, fmt::format("Exporting {}", path.filename().string()), true,
+                  [path, text]() -> std::function<void(App&)> {
+                      write_file(path, std::as_bytes(std::span(text)));
+                      return
+                          [path](App& a) { say(a, Tone::done, fmt::format("Exported {}.", path.string())); };
+                  });
         return;
     }
     const ExportSettings& settings = app.export_dialog.settings;
@@ -190,9 +191,12 @@ void export_to(App& app, const fs::path& path) {
     app.jobs.export_title = fmt::format("Exporting {}", path.filename().string());
     app.jobs.exported = [path, format, encode](App& a, Image image) {
         start_job(a, fmt::format("Writing {}", path.filename().string()), true,
-                  [path, format, encode, image = std::make_shared<Image>(std::move(image))]() -> std::function<void(App&)> {
+                  [path, format, encode,
+                   image = std::make_shared<Image>(std::move(image))]() -> std::function<void(App&)> {
                       write_file(path, format->encode(*image, encode));
-                      return [path](App& later) { say(later, Tone::done, fmt::format("Exported {}.", path.string())); };
+                      return [path](App& later) {
+                          say(later, Tone::done, fmt::format("Exported {}.", path.string()));
+                      };
                   });
     };
     app.wake();
@@ -200,16 +204,36 @@ void export_to(App& app, const fs::path& path) {
 
 void handle_requests(App& app) {
     for (const Request request : std::exchange(app.editor.requests, {})) switch (request) {
-            case Request::new_document: after_saving(app, "closing it", &new_document); break;
-            case Request::open: after_saving(app, "opening another", &open_dialog); break;
-            case Request::save: save(app); break;
-            case Request::save_as: save_as(app); break;
-            case Request::export_picture: export_dialog(app); break;
-            case Request::import_probes: import_probes_dialog(app); break;
-            case Request::replace_picture: replace_picture_dialog(app); break;
-            case Request::switch_theme: switch_theme(app); break;
-            case Request::about: app.about_open = true; break;
-            case Request::quit: after_saving(app, "leaving", [](App& a) { a.quit = true; }); break;
+            case Request::new_document:
+                after_saving(app, "closing it", &new_document);
+                break;
+            case Request::open:
+                after_saving(app, "opening another", &open_dialog);
+                break;
+            case Request::save:
+                save(app);
+                break;
+            case Request::save_as:
+                save_as(app);
+                break;
+            case Request::export_picture:
+                export_dialog(app);
+                break;
+            case Request::import_probes:
+                import_probes_dialog(app);
+                break;
+            case Request::replace_picture:
+                replace_picture_dialog(app);
+                break;
+            case Request::switch_theme:
+                switch_theme(app);
+                break;
+            case Request::about:
+                app.about_open = true;
+                break;
+            case Request::quit:
+                after_saving(app, "leaving", [](App& a) { a.quit = true; });
+                break;
         }
     if (!app.editor.notice.empty()) say(app, Tone::hint, std::exchange(app.editor.notice, {}));
 }

@@ -61,7 +61,7 @@ struct App {
     Fonts fonts;
     float scale = 1;
     Shown shown;
-    PicturePtr uploaded;         ///< the picture that the renderer holds
+    PicturePtr uploaded;  ///< the picture that the renderer holds
     double deform_milliseconds = 0;
 
     Jobs jobs;

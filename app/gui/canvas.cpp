@@ -23,7 +23,8 @@ void update_renderer(App& app) {
     refresh(editor);
     if (editor.deformation.version != version)
         app.deform_milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - before).count();
-    if (app.shown.mesh_version != editor.deformation.mesh_version) app.renderer->set_mesh(editor.deformation.mesh);
+    if (app.shown.mesh_version != editor.deformation.mesh_version)
+        app.renderer->set_mesh(editor.deformation.mesh);
     if (app.shown.version != editor.deformation.version) app.renderer->set_positions(editor.deformation.now);
 }
 
@@ -35,9 +36,9 @@ void update_texture(App& app, glm::ivec2 size) {
     update_renderer(app);
     const Editor& editor = app.editor;
     Shown& shown = app.shown;
-    if (shown.picture == app.uploaded && shown.version == editor.deformation.version && shown.mesh_version == editor.deformation.mesh_version &&
-        same(shown.view, editor.view) && shown.size == size && shown.mesh == editor.show_mesh &&
-        shown.light == app.theme.is_light)
+    if (shown.picture == app.uploaded && shown.version == editor.deformation.version &&
+        shown.mesh_version == editor.deformation.mesh_version && same(shown.view, editor.view) &&
+        shown.size == size && shown.mesh == editor.show_mesh && shown.light == app.theme.is_light)
         return;
     View view;
     view.scale = glm::dvec2(editor.view.zoom);
@@ -45,7 +46,8 @@ void update_texture(App& app, glm::ivec2 size) {
     view.width = size.x;
     view.height = size.y;
     app.renderer->draw(view, 1);
-    shown.texture = app.renderer->display(view, display_colours(app.theme), double(app.px(12)), editor.show_mesh);
+    shown.texture =
+        app.renderer->display(view, display_colours(app.theme), double(app.px(12)), editor.show_mesh);
     shown.picture = app.uploaded;
     shown.mesh_version = editor.deformation.mesh_version;
     shown.version = editor.deformation.version;
@@ -68,7 +70,8 @@ struct ProbePainter {
         const int dashes = std::clamp(int(radius * 2 * std::numbers::pi / double(app.px(10))), 8, 400);
         const ImU32 colour = to_u32(probe.colour, 0.75f);
         for (int i = 0; i < dashes; ++i) {
-            const float from = float(2 * std::numbers::pi * i / dashes), to = from + float(std::numbers::pi / dashes);
+            const float from = float(2 * std::numbers::pi * i / dashes),
+                        to = from + float(std::numbers::pi / dashes);
             list->PathArcTo(middle, float(radius), from, to, 6);
             list->PathStroke(colour, 0, app.px(1.5));
         }
@@ -77,7 +80,8 @@ struct ProbePainter {
     void draw(const Probe& probe) const {
         const Editor& editor = app.editor;
         const bool chosen = probe.id == editor.selected;
-        const bool lit = editor.hover.probe == probe.id || (editor.gesture && editor.gesture->probe == probe.id);
+        const bool lit =
+            editor.hover.probe == probe.id || (editor.gesture && editor.gesture->probe == probe.id);
         const ImU32 dark = IM_COL32(0x0d, 0x0f, 0x12, 255);
         const ImU32 plain = to_u32(probe.colour);
         const ImU32 colour = lit ? mixed(plain, IM_COL32_WHITE, 0.25f) : plain;
@@ -101,22 +105,26 @@ struct ProbePainter {
             ImFont* font = app.fonts.icons_small;
             const float size = app.px(12);
             const ImVec2 extent = font->CalcTextSizeA(size, FLT_MAX, 0, icon::lock);
-            list->AddText(font, size, {badge.x - extent.x / 2, badge.y - extent.y / 2}, IM_COL32_WHITE, icon::lock);
+            list->AddText(font, size, {badge.x - extent.x / 2, badge.y - extent.y / 2}, IM_COL32_WHITE,
+                          icon::lock);
         }
     }
 };
 
-void draw_label(const App& app, ImDrawList* list, ImVec2 at, const std::string& text, ImU32 ink, float opacity,
-                float rounding) {
+void draw_label(const App& app, ImDrawList* list, ImVec2 at, const std::string& text, ImU32 ink,
+                float opacity, float rounding) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const ImVec2 pad{app.px(12), app.px(5)};
-    list->AddRectFilled(at, {at.x + size.x + 2 * pad.x, at.y + size.y + 2 * pad.y}, IM_COL32(0x0d, 0x0f, 0x12, int(255 * opacity)), rounding);
+    list->AddRectFilled(at, {at.x + size.x + 2 * pad.x, at.y + size.y + 2 * pad.y},
+                        IM_COL32(0x0d, 0x0f, 0x12, int(255 * opacity)), rounding);
     list->AddText({at.x + pad.x, at.y + pad.y}, ink, text.c_str());
 }
 
 constexpr ImU32 bright = IM_COL32(0xdf, 0xe3, 0xea, 255), calm = IM_COL32(0xa4, 0xab, 0xb7, 255);
 
-std::string signed_number(double value) { return fmt::format("{}{:.0f}", std::round(value) < 0 ? "−" : "+", std::abs(value)); }
+std::string signed_number(double value) {
+    return fmt::format("{}{:.0f}", std::round(value) < 0 ? "−" : "+", std::abs(value));
+}
 
 void draw_gesture_label(const App& app, const ProbePainter& painter) {
     const Editor& editor = app.editor;
@@ -126,10 +134,11 @@ void draw_gesture_label(const App& app, const ProbePainter& painter) {
     const glm::dvec2 way = probe->now - probe->rest;
     const std::string text = editor.gesture->kind == Gesture::Kind::reach
                                  ? fmt::format("reach {:.0f} px", probe->radius)
-                                 : fmt::format("{}, {} px   {:.0f}°", signed_number(way.x), signed_number(way.y),
-                                               probe->angle * 180 / std::numbers::pi);
+                                 : fmt::format("{}, {} px   {:.0f}°", signed_number(way.x),
+                                               signed_number(way.y), probe->angle * 180 / std::numbers::pi);
     const ImVec2 middle = painter.at(to_canvas(editor.view, probe->now));
-    draw_label(app, painter.list, {std::round(middle.x + app.px(32)), std::round(middle.y - app.px(74))}, text, bright, 0.88f, app.px(6));
+    draw_label(app, painter.list, {std::round(middle.x + app.px(32)), std::round(middle.y - app.px(74))},
+               text, bright, 0.88f, app.px(6));
 }
 
 void draw_hint(const App& app, ImDrawList* list, float left, float bottom, float width) {
@@ -137,14 +146,17 @@ void draw_hint(const App& app, ImDrawList* list, float left, float bottom, float
     ImGui::PushFont(app.fonts.small);
     const float text_width = ImGui::CalcTextSize(text.c_str()).x + app.px(24);
     if (text_width <= width && !app.editor.gesture)
-        draw_label(app, list, {std::round(left + (width - text_width) / 2), bottom - app.px(32)}, text, calm, 0.6f, app.px(12));
+        draw_label(app, list, {std::round(left + (width - text_width) / 2), bottom - app.px(32)}, text, calm,
+                   0.6f, app.px(12));
     ImGui::PopFont();
 }
 
 void choose_cursor(const Editor& editor) {
-    if (editor.gesture && editor.gesture->kind == Gesture::Kind::pan) return ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+    if (editor.gesture && editor.gesture->kind == Gesture::Kind::pan)
+        return ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
     if (editor.hover.part == Part::disc) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
-    if (editor.hover.part == Part::knob || editor.hover.part == Part::reach) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if (editor.hover.part == Part::knob || editor.hover.part == Part::reach)
+        ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
 }
 
 }  // namespace
@@ -158,8 +170,9 @@ void draw_canvas(App& app, float left, float top, float width, float height) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
     ImGui::PushStyleColor(ImGuiCol_WindowBg, app.theme.canvas);
-    ImGui::Begin("##canvas", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                          ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+    ImGui::Begin("##canvas", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(3);
     if (!has_picture(editor)) {
@@ -170,13 +183,15 @@ void draw_canvas(App& app, float left, float top, float width, float height) {
     update_texture(app, {int(width), int(height)});
     ImDrawList* list = ImGui::GetWindowDrawList();
     if (app.shown.texture != 0 && app.shown.picture == editor.document.picture)
-        list->AddImage(reinterpret_cast<ImTextureID>(std::uintptr_t(app.shown.texture)), {left, top}, {left + width, top + height});
+        list->AddImage(reinterpret_cast<ImTextureID>(std::uintptr_t(app.shown.texture)), {left, top},
+                       {left + width, top + height});
     const ProbePainter painter{app, list, {left, top}};
     list->PushClipRect({left, top}, {left + width, top + height}, true);
     if (editor.show_probes) {
         for (const Probe& probe : editor.document.probes)
             if (probe.visible && probe.id != editor.selected) painter.draw(probe);
-        if (const Probe* chosen = find_probe(editor.document, editor.selected); chosen && chosen->visible) painter.draw(*chosen);
+        if (const Probe* chosen = find_probe(editor.document, editor.selected); chosen && chosen->visible)
+            painter.draw(*chosen);
         draw_gesture_label(app, painter);
     }
     draw_hint(app, list, left, top + height, width);

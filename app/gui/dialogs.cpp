@@ -17,7 +17,8 @@ namespace probewarp {
 namespace {
 
 constexpr ImGuiWindowFlags dialog_flags = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                          ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
+                                          ImGuiWindowFlags_NoSavedSettings |
+                                          ImGuiWindowFlags_AlwaysAutoResize;
 
 bool begin_dialog(const App& app, const char* title, float width) {
     if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
@@ -69,11 +70,14 @@ void draw_export_settings(App& app) {
     const float width = ImGui::GetContentRegionAvail().x - app.px(92);
     double percent = dialog.settings.scale * 100;
     row_label(app, "Scale", 92);
-    if (number_field(app, "##scale", percent, "%", width, 0.5, 0.1, 10000)) dialog.settings.scale = percent / 100;
+    if (number_field(app, "##scale", percent, "%", width, 0.5, 0.1, 10000))
+        dialog.settings.scale = percent / 100;
 
     const int choices[] = {1, 2, 3, 4, 8};
     row_label(app, "Samples", 92);
-    const auto text = [](int n) { return n == 1 ? std::string("1: exact pixels") : fmt::format("{0} × {0}: smooth edges", n); };
+    const auto text = [](int n) {
+        return n == 1 ? std::string("1: exact pixels") : fmt::format("{0} × {0}: smooth edges", n);
+    };
     if (begin_combo(app, "##samples", text(dialog.settings.samples).c_str(), width)) {
         for (const int n : choices)
             if (ImGui::Selectable(text(n).c_str(), n == dialog.settings.samples)) dialog.settings.samples = n;
@@ -83,7 +87,8 @@ void draw_export_settings(App& app) {
     const char* const canvases[] = {"The picture's rectangle", "All of the deformed picture"};
     if (begin_combo(app, "##canvas", canvases[int(dialog.settings.canvas)], width)) {
         for (const Canvas canvas : {Canvas::image, Canvas::fit})
-            if (ImGui::Selectable(canvases[int(canvas)], canvas == dialog.settings.canvas)) dialog.settings.canvas = canvas;
+            if (ImGui::Selectable(canvases[int(canvas)], canvas == dialog.settings.canvas))
+                dialog.settings.canvas = canvas;
         ImGui::EndCombo();
     }
 
@@ -96,7 +101,8 @@ void draw_export_settings(App& app) {
     dialog.settings.background.reset();
     const auto byte = [](float v) { return std::uint8_t(std::clamp(v, 0.0f, 1.0f) * 255 + 0.5f); };
     if (!dialog.transparent)
-        dialog.settings.background = Colour{byte(dialog.background[0]), byte(dialog.background[1]), byte(dialog.background[2])};
+        dialog.settings.background =
+            Colour{byte(dialog.background[0]), byte(dialog.background[1]), byte(dialog.background[2])};
 
     const ImageFormat* format = image_format_of(dialog.path);
     if (format && format->name == "jpeg") {
@@ -145,13 +151,14 @@ void draw_export_dialog(App& app) {
     row_label(app, "File", 92);
     if (appearing) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - app.px(96));
-    const bool entered = ImGui::InputText("##path", &dialog.path, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    const bool entered = ImGui::InputText(
+        "##path", &dialog.path, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::IsItemEdited()) dialog.overwrite_asked = false;
     ImGui::SameLine();
     if (ImGui::Button("Browse…", {app.px(88), 0})) {
         ImGui::CloseCurrentPopup();
-        ask_for_file(app, "Export to", "Choose", true, {".png", ".jpg", ".jpeg", ".bmp", ".tga", ".obj"}, dialog.path,
-                     [](App& a, const std::filesystem::path& path) {
+        ask_for_file(app, "Export to", "Choose", true, {".png", ".jpg", ".jpeg", ".bmp", ".tga", ".obj"},
+                     dialog.path, [](App& a, const std::filesystem::path& path) {
                          a.export_dialog.path = path.string();
                          std::error_code ignored;  // where it exists, the file dialog has asked
                          a.export_dialog.overwrite_asked = std::filesystem::exists(path, ignored);
@@ -169,7 +176,8 @@ void draw_export_dialog(App& app) {
         ImGui::Text("This file exists and will be replaced. Press Export once more.");
     else {
         const View view = export_view(app.editor.document, app.editor.deformation, dialog.settings);
-        ImGui::Text("%d × %d pixels, %d bits a channel", view.width, view.height, app.editor.document.picture->image.bits());
+        ImGui::Text("%d × %d pixels, %d bits a channel", view.width, view.height,
+                    app.editor.document.picture->image.bits());
     }
     ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
@@ -177,7 +185,8 @@ void draw_export_dialog(App& app) {
     align_buttons(app, 2, 108);
     const bool cancelled = ImGui::Button("Cancel", {app.px(108), app.px(28)}) || escape_pressed();
     ImGui::SameLine();
-    if ((accent_button(app, "Export", {app.px(108), app.px(28)}, nullptr, trouble.empty()) || entered) && trouble.empty())
+    if ((accent_button(app, "Export", {app.px(108), app.px(28)}, nullptr, trouble.empty()) || entered) &&
+        trouble.empty())
         begin_export(app);
     if (cancelled) {
         dialog.open = false;
@@ -189,8 +198,9 @@ void draw_export_dialog(App& app) {
 void draw_about(App& app) {
     if (!app.about_open || !begin_dialog(app, "About Probewarp", 460)) return;
     ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted("Deforms pictures with probes, by dual number linear blending of anti-commutative dual "
-                           "complex numbers (Matsuda, Kaji, Ochiai, arXiv 1601.01754).");
+    ImGui::TextUnformatted(
+        "Deforms pictures with probes, by dual number linear blending of anti-commutative dual "
+        "complex numbers (Matsuda, Kaji, Ochiai, arXiv 1601.01754).");
     ImGui::Text("Rendered by %s. MIT licence.", app.renderer_label.c_str());
     ImGui::PopTextWrapPos();
     ImGui::Dummy({0, app.px(4)});

@@ -19,7 +19,8 @@ namespace {
 constexpr std::size_t most_entries = 5000;
 
 std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
     return text;
 }
 
@@ -40,10 +41,14 @@ void list_folder(FileDialog& dialog) {
         if (label.starts_with('.')) continue;
         const bool is_folder = at->is_directory(ignored);
         const std::string ending = lower(at->path().extension().string());
-        if (!is_folder && std::find(dialog.endings.begin(), dialog.endings.end(), ending) == dialog.endings.end()) continue;
-        dialog.entries.push_back({at->path(), label, is_folder ? "" : size_text(at->file_size(ignored)), is_folder});
+        if (!is_folder &&
+            std::find(dialog.endings.begin(), dialog.endings.end(), ending) == dialog.endings.end())
+            continue;
+        dialog.entries.push_back(
+            {at->path(), label, is_folder ? "" : size_text(at->file_size(ignored)), is_folder});
     }
-    if (error) dialog.trouble = fmt::format("{} cannot be listed: {}.", dialog.folder.string(), error.message());
+    if (error)
+        dialog.trouble = fmt::format("{} cannot be listed: {}.", dialog.folder.string(), error.message());
     std::sort(dialog.entries.begin(), dialog.entries.end(), [](const auto& a, const auto& b) {
         return a.is_folder != b.is_folder ? a.is_folder : lower(a.label) < lower(b.label);
     });
@@ -81,7 +86,8 @@ void accept(App& app) {
     }
     if (dialog.saving && fs::exists(path, ignored) && !dialog.overwrite_asked) {
         dialog.overwrite_asked = true;
-        dialog.trouble = fmt::format("{} exists. Press {} once more to replace it.", path.filename().string(), dialog.action);
+        dialog.trouble = fmt::format("{} exists. Press {} once more to replace it.", path.filename().string(),
+                                     dialog.action);
         return;
     }
     dialog.open = false;
@@ -122,7 +128,8 @@ void draw_entries(App& app, float height) {
             const ImVec2 at = ImGui::GetCursorScreenPos();
             const float right = at.x + ImGui::GetContentRegionAvail().x;
             if (ImGui::Selectable("##entry", !entry.is_folder && dialog.name == entry.label,
-                                  ImGuiSelectableFlags_AllowDoubleClick, {0, app.px(28) - ImGui::GetStyle().ItemSpacing.y})) {
+                                  ImGuiSelectableFlags_AllowDoubleClick,
+                                  {0, app.px(28) - ImGui::GetStyle().ItemSpacing.y})) {
                 if (entry.is_folder)
                     entered = entry.path;
                 else {
@@ -133,12 +140,15 @@ void draw_entries(App& app, float height) {
                 }
             }
             const float middle = at.y + (app.px(28) - ImGui::GetStyle().ItemSpacing.y) / 2;
-            draw_icon(app.fonts.icons_small, {at.x + app.px(16), middle}, entry.is_folder ? app.theme.accent : app.theme.muted,
+            draw_icon(app.fonts.icons_small, {at.x + app.px(16), middle},
+                      entry.is_folder ? app.theme.accent : app.theme.muted,
                       entry.is_folder ? icon::folder : icon::image);
             ImDrawList* list = ImGui::GetWindowDrawList();
-            list->AddText({at.x + app.px(32), std::round(middle - ImGui::GetFontSize() / 2)}, app.theme.text, entry.label.c_str());
+            list->AddText({at.x + app.px(32), std::round(middle - ImGui::GetFontSize() / 2)}, app.theme.text,
+                          entry.label.c_str());
             const float width = ImGui::CalcTextSize(entry.detail.c_str()).x;
-            list->AddText({right - width - app.px(12), std::round(middle - ImGui::GetFontSize() / 2)}, app.theme.muted, entry.detail.c_str());
+            list->AddText({right - width - app.px(12), std::round(middle - ImGui::GetFontSize() / 2)},
+                          app.theme.muted, entry.detail.c_str());
             ImGui::PopID();
         }
     if (dialog.entries.empty()) {
@@ -152,8 +162,9 @@ void draw_entries(App& app, float height) {
 
 }  // namespace
 
-void ask_for_file(App& app, std::string title, std::string action, bool saving, std::vector<std::string> endings,
-                  const fs::path& start, std::function<void(App&, const fs::path&)> chosen) {
+void ask_for_file(App& app, std::string title, std::string action, bool saving,
+                  std::vector<std::string> endings, const fs::path& start,
+                  std::function<void(App&, const fs::path&)> chosen) {
     FileDialog& dialog = app.file_dialog;
     dialog = {};
     dialog.open = dialog.focus_wanted = true;
@@ -177,8 +188,12 @@ void draw_file_dialog(App& app) {
     if (dialog.open && !ImGui::IsPopupOpen(id.c_str())) ImGui::OpenPopup(id.c_str());
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize({std::min(app.px(720), display.x * 0.95f), std::min(app.px(520), display.y * 0.95f)});
-    if (!ImGui::BeginPopupModal(id.c_str(), nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) return;
+    ImGui::SetNextWindowSize(
+        {std::min(app.px(720), display.x * 0.95f), std::min(app.px(520), display.y * 0.95f)});
+    if (!ImGui::BeginPopupModal(
+            id.c_str(), nullptr,
+            ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings))
+        return;
     if (icon_button(app, "##up", icon::up, "The folder above")) go_to(dialog, dialog.folder.parent_path());
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
@@ -192,7 +207,8 @@ void draw_file_dialog(App& app) {
     if (dialog.focus_wanted) ImGui::SetKeyboardFocusHere();
     dialog.focus_wanted = false;
     ImGui::SetNextItemWidth(-1);
-    const bool entered = ImGui::InputText("##name", &dialog.name, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    const bool entered = ImGui::InputText(
+        "##name", &dialog.name, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::IsItemEdited()) dialog.trouble.clear(), dialog.overwrite_asked = false;
     if (entered) {
         accept(app);
@@ -208,7 +224,8 @@ void draw_file_dialog(App& app) {
         ImGui::CloseCurrentPopup();
     }
     ImGui::SameLine();
-    if (accent_button(app, dialog.action.c_str(), {app.px(100), app.px(28)}, nullptr, !dialog.name.empty())) accept(app);
+    if (accent_button(app, dialog.action.c_str(), {app.px(100), app.px(28)}, nullptr, !dialog.name.empty()))
+        accept(app);
     if (!dialog.open) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }

@@ -36,10 +36,13 @@ ImVector<ImWchar> ranges_of(const char* text) {
 
 Fonts load_fonts(float scale) {
     // Latin with its extensions, Greek, Cyrillic, punctuation, arrows and mathematical signs.
-    static constexpr ImWchar text[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x205e, 0x2190, 0x21ff, 0x2200, 0x22ff, 0x25cf, 0x25cf, 0};
-    const auto regular = {"opentype/inter/Inter-Regular.otf", "truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf",
+    static constexpr ImWchar text[] = {0x20,   0x24f,  0x370,  0x52f,  0x2010, 0x205e, 0x2190,
+                                       0x21ff, 0x2200, 0x22ff, 0x25cf, 0x25cf, 0};
+    const auto regular = {"opentype/inter/Inter-Regular.otf",
+                          "truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf",
                           "truetype/dejavu/DejaVuSans.ttf"};
-    const auto bold = {"opentype/inter/Inter-SemiBold.otf", "truetype/roboto/unhinted/RobotoTTF/Roboto-Medium.ttf",
+    const auto bold = {"opentype/inter/Inter-SemiBold.otf",
+                       "truetype/roboto/unhinted/RobotoTTF/Roboto-Medium.ttf",
                        "truetype/dejavu/DejaVuSans-Bold.ttf"};
     const auto symbols = {"truetype/materialdesignicons-webfont/materialdesignicons-webfont.ttf"};
     static const ImVector<ImWchar> icons = ranges_of(icon::all);

@@ -104,9 +104,8 @@ void prepare_picture(App& app, PicturePtr picture) {
 }
 
 bool is_busy(const App& app) {
-    return app.jobs.exporting ||
-           std::any_of(app.jobs.running.begin(), app.jobs.running.end(),
-                       [](const auto& job) { return job->blocks && !job->given_up; });
+    return app.jobs.exporting || std::any_of(app.jobs.running.begin(), app.jobs.running.end(),
+                                             [](const auto& job) { return job->blocks && !job->given_up; });
 }
 
 void draw_progress(App& app) {

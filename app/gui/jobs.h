@@ -16,14 +16,15 @@ namespace probewarp {
 
 struct App;
 
-/// One piece of work on a thread of its own. `finish` runs on the window's thread, unless the work was given up.
+/// One piece of work on a thread of its own. `finish` runs on the window's thread, unless the work was given
+/// up.
 struct Job {
-    std::string title;                ///< "Opening gingerbread.png"
-    bool blocks = true;               ///< the window waits for it behind a dialog
-    std::atomic<bool> done = false;   ///< the thread has ended
+    std::string title;               ///< "Opening gingerbread.png"
+    bool blocks = true;              ///< the window waits for it behind a dialog
+    std::atomic<bool> done = false;  ///< the thread has ended
     std::atomic<bool> given_up = false;
-    std::string error;                ///< written by the thread before done
-    std::function<void(App&)> finish; ///< written by the thread before done
+    std::string error;                 ///< written by the thread before done
+    std::function<void(App&)> finish;  ///< written by the thread before done
     std::jthread thread;
 };
 
@@ -32,7 +33,8 @@ struct Upload {
     PicturePtr picture;
     std::vector<Image> levels;
     PictureUpload steps;
-    Upload(PicturePtr p, std::vector<Image> l) : picture(std::move(p)), levels(std::move(l)), steps(picture->image, levels) {}
+    Upload(PicturePtr p, std::vector<Image> l)
+        : picture(std::move(p)), levels(std::move(l)), steps(picture->image, levels) {}
 };
 
 struct Jobs {
@@ -44,7 +46,8 @@ struct Jobs {
     std::string export_title;
 };
 
-/// Runs `work` on a thread; what it returns is called on the window's thread afterwards. An Error it throws is said.
+/// Runs `work` on a thread; what it returns is called on the window's thread afterwards. An Error it throws
+/// is said.
 void start_job(App& app, std::string title, bool blocks, std::function<std::function<void(App&)>()> work);
 
 /// Begins to hand a picture to the renderer; App::uploaded is it when that is done.

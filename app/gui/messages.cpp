@@ -25,10 +25,15 @@ bool draw_one(App& app, Message& message, float right, float& bottom) {
     const std::string id = fmt::format("##message{}", static_cast<const void*>(&message));
     ImGui::Begin(id.c_str(), nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
-    const char* symbol = message.tone == Tone::done ? icon::done : message.tone == Tone::hint ? icon::info : icon::alert;
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoNav);
+    const char* symbol = message.tone == Tone::done   ? icon::done
+                         : message.tone == Tone::hint ? icon::info
+                                                      : icon::alert;
     const ImU32 colour = message.tone == Tone::error ? IM_COL32(0xff, 0x9d, 0x5c, 255) : app.theme.accent;
-    ImGui::PushStyleColor(ImGuiCol_Text, app.theme.is_light && message.tone == Tone::error ? IM_COL32(0xb5, 0x4a, 0, 255) : colour);
+    ImGui::PushStyleColor(ImGuiCol_Text, app.theme.is_light && message.tone == Tone::error
+                                             ? IM_COL32(0xb5, 0x4a, 0, 255)
+                                             : colour);
     ImGui::PushFont(app.fonts.icons);
     ImGui::TextUnformatted(symbol);
     ImGui::PopFont();
@@ -41,13 +46,15 @@ bool draw_one(App& app, Message& message, float right, float& bottom) {
     bool closed = false;
     if (error) {
         ImGui::SetCursorPos({width - app.px(68), app.px(8)});
-        if (icon_button(app, "##copy", icon::copy, "Copy this message")) ImGui::SetClipboardText(message.text.c_str());
+        if (icon_button(app, "##copy", icon::copy, "Copy this message"))
+            ImGui::SetClipboardText(message.text.c_str());
         ImGui::SetCursorPos({width - app.px(36), app.px(8)});
         closed = icon_button(app, "##close", icon::close, "Close");
     }
     bottom -= ImGui::GetWindowHeight() + app.px(8);
-    app.overlays.push_back({ImGui::GetWindowPos(), ImVec2(ImGui::GetWindowPos().x + ImGui::GetWindowWidth(),
-                                                          ImGui::GetWindowPos().y + ImGui::GetWindowHeight())});
+    app.overlays.push_back(
+        {ImGui::GetWindowPos(), ImVec2(ImGui::GetWindowPos().x + ImGui::GetWindowWidth(),
+                                       ImGui::GetWindowPos().y + ImGui::GetWindowHeight())});
     ImGui::End();
     ImGui::PopStyleColor();
     return !closed;
@@ -62,7 +69,8 @@ void say(App& app, Tone tone, std::string text) {
 }
 
 void draw_messages(App& app) {
-    std::erase_if(app.messages, [](const Message& m) { return ImGui::GetTime() - m.shown_at > lifetime(m.tone); });
+    std::erase_if(app.messages,
+                  [](const Message& m) { return ImGui::GetTime() - m.shown_at > lifetime(m.tone); });
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     float bottom = display.y - app.px(look::status + 16);
     const float right = display.x - app.px(has_picture(app.editor) ? look::panel + 16 : 16);

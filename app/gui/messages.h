@@ -1,4 +1,5 @@
-// Messages at the lower right: what happened, in a sentence that can be copied. Errors stay until they are read.
+// Messages at the lower right: what happened, in a sentence that can be copied. Errors stay until they are
+// read.
 #pragma once
 
 #include <string>

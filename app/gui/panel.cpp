@@ -30,14 +30,17 @@ void edit_at_once(App& app, const std::string& label) { commit(app.editor, label
 void draw_name(App& app, Probe& probe, ImVec2 at, bool chosen) {
     if (app.renaming != probe.id) {
         const float y = std::round(at.y + (app.px(look::field) - ImGui::GetFontSize()) / 2);
-        ImGui::GetWindowDrawList()->AddText({at.x + app.px(42), y}, chosen ? app.theme.text : mixed(app.theme.text, app.theme.muted, 0.25f), probe.name.c_str());
+        ImGui::GetWindowDrawList()->AddText(
+            {at.x + app.px(42), y}, chosen ? app.theme.text : mixed(app.theme.text, app.theme.muted, 0.25f),
+            probe.name.c_str());
         return;
     }
     ImGui::SetCursorScreenPos({at.x + app.px(36), at.y});
     ImGui::SetNextItemWidth(app.px(170));
     const bool first = !ImGui::IsAnyItemActive();
     if (first) ImGui::SetKeyboardFocusHere();
-    const bool entered = ImGui::InputText("##rename", &app.new_name, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    const bool entered = ImGui::InputText(
+        "##rename", &app.new_name, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     if (!entered && !ImGui::IsItemDeactivated()) return;
     app.renaming = 0;
     if (app.new_name.empty() || app.new_name.size() > 200 || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE)) return;
@@ -60,20 +63,26 @@ void draw_probe_row(App& app, Probe& probe) {
         app.renaming = probe.id;
         app.new_name = probe.name;
     }
-    if (chosen || hovered) list->AddRectFilled(at, {at.x + width, at.y + height}, chosen ? app.theme.raised : faded(app.theme.raised, 0.5f), app.px(5));
+    if (chosen || hovered)
+        list->AddRectFilled(at, {at.x + width, at.y + height},
+                            chosen ? app.theme.raised : faded(app.theme.raised, 0.5f), app.px(5));
     if (chosen) list->AddRectFilled(at, {at.x + app.px(3), at.y + height}, app.theme.accent, app.px(1.5));
-    list->AddCircleFilled({at.x + app.px(18), at.y + height / 2}, app.px(6), to_u32(probe.colour, probe.visible ? 1 : 0.4f), 24);
+    list->AddCircleFilled({at.x + app.px(18), at.y + height / 2}, app.px(6),
+                          to_u32(probe.colour, probe.visible ? 1 : 0.4f), 24);
     draw_name(app, probe, at, chosen);
     ImGui::SetCursorScreenPos({at.x + width - app.px(62), at.y});
-    ImGui::PushStyleVar(ImGuiStyleVar_Alpha, probe.locked ? 1.0f : 0.5f);  // most are unlocked: they step back
-    const bool toggled = icon_button(app, "##lock", probe.locked ? icon::lock : icon::lock_open, probe.locked ? "Unlock" : "Lock: cannot be moved by hand");
+    ImGui::PushStyleVar(ImGuiStyleVar_Alpha,
+                        probe.locked ? 1.0f : 0.5f);  // most are unlocked: they step back
+    const bool toggled = icon_button(app, "##lock", probe.locked ? icon::lock : icon::lock_open,
+                                     probe.locked ? "Unlock" : "Lock: cannot be moved by hand");
     ImGui::PopStyleVar();
     if (toggled) {
         probe.locked = !probe.locked;
         edit_at_once(app, probe.locked ? "Lock" : "Unlock");
     }
     ImGui::SetCursorScreenPos({at.x + width - app.px(32), at.y});
-    if (icon_button(app, "##eye", probe.visible ? icon::eye : icon::eye_off, probe.visible ? "Hide (it still deforms)" : "Show")) {
+    if (icon_button(app, "##eye", probe.visible ? icon::eye : icon::eye_off,
+                    probe.visible ? "Hide (it still deforms)" : "Show")) {
         probe.visible = !probe.visible;
         edit_at_once(app, probe.visible ? "Show" : "Hide");
     }
@@ -123,7 +132,8 @@ void draw_chosen_probe(App& app) {
     row_label(app, "Turn", 52);
     double degrees = probe->angle * 180 / std::numbers::pi;
     const int turns = int(std::trunc(degrees / 360));
-    const std::string unit = turns == 0 ? "°" : fmt::format("{} × + {:.1f} °", turns, degrees - 360.0 * turns);
+    const std::string unit =
+        turns == 0 ? "°" : fmt::format("{} × + {:.1f} °", turns, degrees - 360.0 * turns);
     if (number_field(app, "##turn", degrees, unit.c_str(), ImGui::GetContentRegionAvail().x, 0.5, -1e6, 1e6))
         probe->angle = degrees * std::numbers::pi / 180;
     is_step(app, "Turn " + probe->name);
@@ -131,7 +141,8 @@ void draw_chosen_probe(App& app) {
     number_field(app, "##reach", probe->radius, "px", ImGui::GetContentRegionAvail().x, 0.5, 1, farthest);
     is_step(app, "Reach of " + probe->name);
     ImGui::EndDisabled();
-    if (probe->locked && ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax()))
+    if (probe->locked && ImGui::IsWindowHovered() &&
+        ImGui::IsMouseHoveringRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax()))
         ImGui::SetTooltip("The probe is locked");
 }
 
@@ -139,7 +150,8 @@ void draw_chosen_probe(App& app) {
 template <class Rows>
 void method_combo(App& app, const char* label, std::string& name, const Rows& rows, const char* step) {
     row_label(app, label, 68);
-    const auto chosen = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.name == name; });
+    const auto chosen =
+        std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.name == name; });
     ImGui::PushID(label);
     if (begin_combo(app, "##method", std::string(chosen->label).c_str(), ImGui::GetContentRegionAvail().x)) {
         for (const auto& row : rows)
@@ -180,7 +192,8 @@ void mesh_slider(App& app) {
     const float part = float(std::sqrt(std::clamp((cells - least) / (most - least), 0.0, 1.0)));
     const float middle = at.y + height / 2, grip = at.x + part * width;
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled({at.x, middle - app.px(2)}, {at.x + width, middle + app.px(2)}, app.theme.line, app.px(2));
+    list->AddRectFilled({at.x, middle - app.px(2)}, {at.x + width, middle + app.px(2)}, app.theme.line,
+                        app.px(2));
     list->AddRectFilled({at.x, middle - app.px(2)}, {grip, middle + app.px(2)}, app.theme.accent, app.px(2));
     list->AddCircleFilled({grip, middle}, app.px(7), IM_COL32_WHITE, 24);
     list->AddCircle({grip, middle}, app.px(7), app.theme.line, 24);
@@ -213,8 +226,10 @@ void draw_panel(App& app) {
     ImGui::SetNextWindowSize({width, height});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
-    ImGui::Begin("##panel", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+    ImGui::Begin("##panel", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                     ImGuiWindowFlags_NoNav);
     ImGui::PopStyleVar(2);
     draw_probes(app);
     draw_chosen_probe(app);
@@ -222,7 +237,8 @@ void draw_panel(App& app) {
     // Leaving a field makes what it did a step, however it was left.
     if (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field && !ImGui::IsAnyItemActive())
         end_field(app.editor, app.field_label);
-    ImGui::GetWindowDrawList()->AddLine({display.x - width, top}, {display.x - width, top + height}, app.theme.line);
+    ImGui::GetWindowDrawList()->AddLine({display.x - width, top}, {display.x - width, top + height},
+                                        app.theme.line);
     ImGui::End();
 }
 

@@ -16,8 +16,8 @@ namespace probewarp {
 namespace {
 
 constexpr ImGuiWindowFlags bar_flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                                       ImGuiWindowFlags_NoNav;
+                                       ImGuiWindowFlags_NoSavedSettings |
+                                       ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav;
 
 void begin_bar(App& app, const char* id, ImVec2 at, ImVec2 size, ImGuiWindowFlags more = 0) {
     ImGui::SetNextWindowPos(at);
@@ -40,7 +40,8 @@ void menu_item(App& app, const Command& command) {
     const std::string why_not = reason(app.editor, command);
     const bool theme = command.label == "Light theme";
     const bool on = theme ? app.theme.is_light : command.on && command.on(app.editor);
-    if (ImGui::MenuItem(std::string(command.label).c_str(), to_text(command.shortcut).c_str(), on, why_not.empty()))
+    if (ImGui::MenuItem(std::string(command.label).c_str(), to_text(command.shortcut).c_str(), on,
+                        why_not.empty()))
         run(app.editor, command);
     if (!why_not.empty()) tooltip(why_not.c_str());
 }
@@ -70,8 +71,9 @@ void draw_title(App& app, float width) {
     const bool saved = is_saved(app.editor.history) && !app.editor.gesture;
     const std::string title = saved ? name : "●  " + name;
     const float text = ImGui::CalcTextSize(title.c_str()).x;
-    ImGui::GetWindowDrawList()->AddText({std::round((width - text) / 2), std::round((app.px(look::menu) - ImGui::GetFontSize()) / 2)},
-                                        app.theme.muted, title.c_str());
+    ImGui::GetWindowDrawList()->AddText(
+        {std::round((width - text) / 2), std::round((app.px(look::menu) - ImGui::GetFontSize()) / 2)},
+        app.theme.muted, title.c_str());
 }
 
 }  // namespace
@@ -89,11 +91,13 @@ void draw_menu_bar(App& app) {
     ImGui::PushClipRect({0, 0}, {width, height}, false);
     draw_title(app, width);
     const float y = (height - app.px(26)) / 2;
-    for (const auto& [label, symbol, x] : {std::tuple{"Undo", icon::undo, 166.0}, {"Redo", icon::redo, 136.0}}) {
+    for (const auto& [label, symbol, x] :
+         {std::tuple{"Undo", icon::undo, 166.0}, {"Redo", icon::redo, 136.0}}) {
         const Command& command = find_command(label);
         ImGui::SetCursorPos({width - app.px(x), y});
         const std::string tip = fmt::format("{} ({})", label, to_text(command.shortcut));
-        if (icon_button(app, label, symbol, tip.c_str(), false, reason(app.editor, command))) run(app.editor, command);
+        if (icon_button(app, label, symbol, tip.c_str(), false, reason(app.editor, command)))
+            run(app.editor, command);
     }
     ImGui::SetCursorPos({width - app.px(96), (height - app.px(22)) / 2});
     if (accent_button(app, "Export", {app.px(84), app.px(22)}, icon::export_, has_picture(app.editor)))
@@ -107,21 +111,27 @@ void draw_menu_bar(App& app) {
 namespace {
 
 /// A button of the tool strip: 36 pixels square, marked at the left where it is the present tool.
-bool strip_button(App& app, const char* id, const char* symbol, float y, bool on, bool is_switch, const std::string& tip) {
+bool strip_button(App& app, const char* id, const char* symbol, float y, bool on, bool is_switch,
+                  const std::string& tip) {
     ImGui::SetCursorPos({app.px(6), y});
     const bool clicked = ImGui::InvisibleButton(id, {app.px(36), app.px(36)});
     const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
     ImDrawList* list = ImGui::GetWindowDrawList();
     const bool hovered = ImGui::IsItemHovered();
     if ((on && !is_switch) || hovered) list->AddRectFilled(from, to, app.theme.raised, app.px(6));
-    if (on && !is_switch) list->AddRectFilled(from, {from.x + app.px(3), to.y}, app.theme.accent, app.px(1.5));
-    const ImU32 colour = is_switch && on ? app.theme.accent : on || hovered ? app.theme.text : app.theme.muted;
+    if (on && !is_switch)
+        list->AddRectFilled(from, {from.x + app.px(3), to.y}, app.theme.accent, app.px(1.5));
+    const ImU32 colour = is_switch && on ? app.theme.accent
+                         : on || hovered ? app.theme.text
+                                         : app.theme.muted;
     draw_icon(app.fonts.icons, {(from.x + to.x) / 2, (from.y + to.y) / 2}, colour, symbol);
     tooltip(tip.c_str());
     return clicked;
 }
 
-const char* tool_icon(std::string_view name) { return name == "select" ? icon::select : name == "add" ? icon::add : icon::zoom; }
+const char* tool_icon(std::string_view name) {
+    return name == "select" ? icon::select : name == "add" ? icon::add : icon::zoom;
+}
 
 }  // namespace
 
@@ -132,7 +142,8 @@ void draw_tool_strip(App& app) {
     float y = app.px(9);
     for (const Tool& tool : tools()) {
         const std::string tip = fmt::format("{} ({})", tool.label, tool.key);
-        if (strip_button(app, std::string(tool.name).c_str(), tool_icon(tool.name), y, app.editor.tool == &tool, false, tip))
+        if (strip_button(app, std::string(tool.name).c_str(), tool_icon(tool.name), y,
+                         app.editor.tool == &tool, false, tip))
             app.editor.tool = &tool;
         y += app.px(44);
     }
@@ -143,7 +154,9 @@ void draw_tool_strip(App& app) {
         const Command& command = find_command(label);
         const bool on = command.on(app.editor);
         const char* shown = !on && command.label == "Show probes" ? icon::eye_off : symbol;
-        if (strip_button(app, label, shown, y, on, true, fmt::format("{} ({})", label, to_text(command.shortcut)))) run(app.editor, command);
+        if (strip_button(app, label, shown, y, on, true,
+                         fmt::format("{} ({})", label, to_text(command.shortcut))))
+            run(app.editor, command);
         y += app.px(40);
     }
     list->AddLine({width - 1, top}, {width - 1, top + height}, app.theme.line);
@@ -163,8 +176,9 @@ std::string facts(const App& app) {
     const Editor& editor = app.editor;
     if (!has_picture(editor)) return app.renderer_label;
     const Image& image = editor.document.picture->image;
-    std::string text = fmt::format("{} × {} · {} vertices · deform {:.2f} ms · {}", image.width, image.height,
-                                   grouped(editor.deformation.now.size()), app.deform_milliseconds, app.renderer_label);
+    std::string text =
+        fmt::format("{} × {} · {} vertices · deform {:.2f} ms · {}", image.width, image.height,
+                    grouped(editor.deformation.now.size()), app.deform_milliseconds, app.renderer_label);
     if (editor.deformation.cancelled > 0)
         text = fmt::format("weights cancel at {} vertices · {}", grouped(editor.deformation.cancelled), text);
     return text;
@@ -203,11 +217,13 @@ void draw_status_bar(App& app) {
     const float y = std::round(top + (height - ImGui::GetFontSize()) / 2);
     if (has_picture(app.editor)) {
         const double percent = app.editor.view.zoom * 100;
-        list->AddText({app.px(16), y}, app.theme.text, fmt::format("{:.{}f} %", percent, percent < 10 ? 1 : 0).c_str());
+        list->AddText({app.px(16), y}, app.theme.text,
+                      fmt::format("{:.{}f} %", percent, percent < 10 ? 1 : 0).c_str());
         draw_pixel(app, app.px(76), y, list);
     }
     const std::string text = facts(app);
-    list->AddText({std::round(display.x - app.px(16) - ImGui::CalcTextSize(text.c_str()).x), y}, app.theme.muted, text.c_str());
+    list->AddText({std::round(display.x - app.px(16) - ImGui::CalcTextSize(text.c_str()).x), y},
+                  app.theme.muted, text.c_str());
     ImGui::PopFont();
     ImGui::End();
 }

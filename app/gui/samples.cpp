@@ -30,11 +30,15 @@ void load_thumbnails(App& app) {
     for (const auto& entry : std::filesystem::directory_iterator(samples_folder(), ignored)) {
         const std::string ending = entry.path().extension().string();
         // A sample project stands for the picture it holds.
-        const bool covered = ending == ".png" && std::filesystem::exists(std::filesystem::path(entry.path()).replace_extension(project_extension), ignored);
+        const bool covered =
+            ending == ".png" &&
+            std::filesystem::exists(std::filesystem::path(entry.path()).replace_extension(project_extension),
+                                    ignored);
         if ((ending == ".png" && !covered) || ending == project_extension)
             app.samples.list.push_back({entry.path(), entry.path().stem().string(), 0, 0, {}});
     }
-    std::sort(app.samples.list.begin(), app.samples.list.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
+    std::sort(app.samples.list.begin(), app.samples.list.end(),
+              [](const auto& a, const auto& b) { return a.path < b.path; });
     for (const Sample& sample : app.samples.list)
         start_job(app, "", false, [path = sample.path]() -> std::function<void(App&)> {
             auto small = std::make_shared<Image>(thumbnail(read_document(path).picture->image));
@@ -67,7 +71,8 @@ void draw_sample(App& app, const Sample& sample, ImVec2 from, ImVec2 size) {
                        {middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y});
     }
     const ImVec2 text = ImGui::CalcTextSize(sample.title.c_str());
-    list->AddText({std::round(from.x + (size.x - text.x) / 2), to.y - app.px(27)}, app.theme.text, sample.title.c_str());
+    list->AddText({std::round(from.x + (size.x - text.x) / 2), to.y - app.px(27)}, app.theme.text,
+                  sample.title.c_str());
     ImGui::PopID();
     if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (clicked) open_path(app, sample.path);
@@ -77,10 +82,13 @@ void draw_sample(App& app, const Sample& sample, ImVec2 from, ImVec2 size) {
 
 std::filesystem::path samples_folder() {
     std::error_code ignored;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+    const std::filesystem::path program =
+        std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
     for (const std::filesystem::path& candidate :
-         {program / "../share/probewarp/images", program / "../../../images", std::filesystem::path(PROBEWARP_DATA_DIR) / "images"})
-        if (std::filesystem::is_directory(candidate, ignored)) return std::filesystem::canonical(candidate, ignored);
+         {program / "../share/probewarp/images", program / "../../../images",
+          std::filesystem::path(PROBEWARP_DATA_DIR) / "images"})
+        if (std::filesystem::is_directory(candidate, ignored))
+            return std::filesystem::canonical(candidate, ignored);
     return {};
 }
 
@@ -88,7 +96,8 @@ void draw_empty_state(App& app, float left, float top, float width, float height
     if (!app.samples.begun) load_thumbnails(app);
     const auto centred = [&](ImFont* font, const char* text, ImU32 colour, float y) {
         const ImVec2 size = font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, text);
-        ImGui::GetWindowDrawList()->AddText(font, font->FontSize, {std::round(left + (width - size.x) / 2), y}, colour, text);
+        ImGui::GetWindowDrawList()->AddText(font, font->FontSize,
+                                            {std::round(left + (width - size.x) / 2), y}, colour, text);
     };
     const ImVec2 card{app.px(168), app.px(184)};
     const float gap = app.px(16), block = app.px(140) + card.y;
@@ -96,7 +105,8 @@ void draw_empty_state(App& app, float left, float top, float width, float height
     centred(app.fonts.large, "Drop a picture here, or open one", app.theme.text, y);
     y += app.px(44);
     ImGui::SetCursorScreenPos({std::round(left + width / 2 - app.px(70)), y});
-    if (accent_button(app, "Open a picture", {app.px(140), app.px(32)}, icon::folder)) run(app.editor, find_command("Open…"));
+    if (accent_button(app, "Open a picture", {app.px(140), app.px(32)}, icon::folder))
+        run(app.editor, find_command("Open…"));
     y += app.px(60);
     if (app.samples.list.empty()) return;
     centred(app.fonts.small, "or begin with a sample", app.theme.muted, y);

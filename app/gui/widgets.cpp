@@ -10,9 +10,9 @@ namespace probewarp {
 
 void draw_icon(ImFont* font, ImVec2 middle, ImU32 colour, const char* symbol) {
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, symbol);
-    ImGui::GetWindowDrawList()->AddText(font, font->FontSize,
-                                        {std::round(middle.x - size.x / 2), std::round(middle.y - size.y / 2)}, colour,
-                                        symbol);
+    ImGui::GetWindowDrawList()->AddText(
+        font, font->FontSize, {std::round(middle.x - size.x / 2), std::round(middle.y - size.y / 2)}, colour,
+        symbol);
 }
 
 void tooltip(const char* text) {
@@ -22,14 +22,19 @@ void tooltip(const char* text) {
     ImGui::PopStyleVar();
 }
 
-bool icon_button(App& app, const char* id, const char* symbol, const char* tip, bool on, const std::string& why_not) {
+bool icon_button(App& app, const char* id, const char* symbol, const char* tip, bool on,
+                 const std::string& why_not) {
     const float side = app.px(26);
     const bool clicked = ImGui::InvisibleButton(id, {side, side}) && why_not.empty();
     const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
     const bool hovered = ImGui::IsItemHovered() && why_not.empty();
     if (hovered) ImGui::GetWindowDrawList()->AddRectFilled(from, to, app.theme.line, app.px(5));
-    const ImU32 colour = !why_not.empty() ? faded(app.theme.muted, 0.45f) : on ? app.theme.accent : hovered ? app.theme.text : app.theme.muted;
-    draw_icon(app.fonts.icons_small, {(from.x + to.x) / 2, (from.y + to.y) / 2}, faded(colour, ImGui::GetStyle().Alpha), symbol);
+    const ImU32 colour = !why_not.empty() ? faded(app.theme.muted, 0.45f)
+                         : on             ? app.theme.accent
+                         : hovered        ? app.theme.text
+                                          : app.theme.muted;
+    draw_icon(app.fonts.icons_small, {(from.x + to.x) / 2, (from.y + to.y) / 2},
+              faded(colour, ImGui::GetStyle().Alpha), symbol);
     tooltip(why_not.empty() ? tip : why_not.c_str());
     return clicked;
 }
@@ -44,7 +49,8 @@ bool accent_button(App& app, const char* label, ImVec2 size, const char* symbol,
     const ImU32 ink = enabled ? app.theme.on_accent : app.theme.muted;
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled(from, to, fill, app.px(5));
-    if (ImGui::IsItemFocused() && ImGui::GetIO().NavVisible) list->AddRect(from, to, app.theme.text, app.px(5), 0, app.px(2));
+    if (ImGui::IsItemFocused() && ImGui::GetIO().NavVisible)
+        list->AddRect(from, to, app.theme.text, app.px(5), 0, app.px(2));
     const ImVec2 text = app.fonts.strong->CalcTextSizeA(app.fonts.strong->FontSize, FLT_MAX, 0, label);
     const float icon_room = symbol ? app.px(20) : 0;
     const float left = from.x + (size.x - text.x - icon_room) / 2;
@@ -62,11 +68,12 @@ bool section(App& app, const char* id, const char* title, bool& open, bool* add)
     const float width = ImGui::GetContentRegionAvail().x, height = app.px(24);
     if (ImGui::InvisibleButton("##fold", {width - (add ? app.px(30) : 0), height})) open = !open;
     const ImU32 chevron = ImGui::IsItemHovered() ? app.theme.text : app.theme.muted;
-    draw_icon(app.fonts.icons_small, {from.x + app.px(4), from.y + height / 2}, chevron, open ? icon::down : icon::right);
+    draw_icon(app.fonts.icons_small, {from.x + app.px(4), from.y + height / 2}, chevron,
+              open ? icon::down : icon::right);
     ImFont* font = app.fonts.strong;
-    ImGui::GetWindowDrawList()->AddText(font, font->FontSize,
-                                        {from.x + app.px(18), std::round(from.y + (height - font->FontSize) / 2)},
-                                        app.theme.text, title);
+    ImGui::GetWindowDrawList()->AddText(
+        font, font->FontSize, {from.x + app.px(18), std::round(from.y + (height - font->FontSize) / 2)},
+        app.theme.text, title);
     if (add) {
         ImGui::SetCursorScreenPos({from.x + width - app.px(22), from.y - app.px(1)});
         *add = icon_button(app, "##add", icon::plus, "Add a probe in the middle of the picture");
@@ -92,7 +99,8 @@ bool begin_combo(App& app, const char* id, const char* shown, float width) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->ChannelsSplit(2);  // the chevron lies over the frame that BeginCombo draws
     list->ChannelsSetCurrent(1);
-    draw_icon(app.fonts.icons_small, {at.x + width - app.px(14), at.y + ImGui::GetFrameHeight() / 2}, app.theme.muted, icon::down);
+    draw_icon(app.fonts.icons_small, {at.x + width - app.px(14), at.y + ImGui::GetFrameHeight() / 2},
+              app.theme.muted, icon::down);
     list->ChannelsSetCurrent(0);
     const bool open = ImGui::BeginCombo(id, shown, ImGuiComboFlags_NoArrowButton);
     list->ChannelsMerge();
@@ -100,29 +108,32 @@ bool begin_combo(App& app, const char* id, const char* shown, float width) {
     return open;
 }
 
-bool number_field(App& app, const char* id, double& value, const char* unit, float width, double step, double least,
-                  double most) {
+bool number_field(App& app, const char* id, double& value, const char* unit, float width, double step,
+                  double least, double most) {
     double edited = value;
-    // ImGui centres a dragged number; columns of numbers read better from the left, so it is drawn here instead.
+    // ImGui centres a dragged number; columns of numbers read better from the left, so it is drawn here
+    // instead.
     const bool typing = ImGui::TempInputIsActive(ImGui::GetID(id));
     const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
     if (!typing) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_BLACK_TRANS);
     ImGui::SetNextItemWidth(width);
     ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, std::max(1.0f, std::floor(app.px(1))));
-    const bool changed = ImGui::DragScalar(id, ImGuiDataType_Double, &edited, float(step), nullptr, nullptr, "%.1f");
+    const bool changed =
+        ImGui::DragScalar(id, ImGuiDataType_Double, &edited, float(step), nullptr, nullptr, "%.1f");
     ImGui::PopStyleVar();
     const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
     if (!typing) {
         ImGui::PopStyleColor();
-        ImGui::GetWindowDrawList()->AddText({from.x + app.px(8), std::round((from.y + to.y - ImGui::GetFontSize()) / 2)},
-                                            ink, fmt::format("{:.1f}", value).c_str());
+        ImGui::GetWindowDrawList()->AddText(
+            {from.x + app.px(8), std::round((from.y + to.y - ImGui::GetFontSize()) / 2)}, ink,
+            fmt::format("{:.1f}", value).c_str());
     }
     if (ImGui::IsItemActive() && ImGui::IsMouseDragging(0)) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     const float unit_width = app.fonts.small->CalcTextSizeA(app.fonts.small->FontSize, FLT_MAX, 0, unit).x;
-    ImGui::GetWindowDrawList()->AddText(app.fonts.small, app.fonts.small->FontSize,
-                                        {to.x - unit_width - app.px(8),
-                                         std::round((from.y + to.y - app.fonts.small->FontSize) / 2)},
-                                        app.theme.muted, unit);
+    ImGui::GetWindowDrawList()->AddText(
+        app.fonts.small, app.fonts.small->FontSize,
+        {to.x - unit_width - app.px(8), std::round((from.y + to.y - app.fonts.small->FontSize) / 2)},
+        app.theme.muted, unit);
     if (!changed || !std::isfinite(edited)) return false;
     value = std::clamp(edited, least, most);
     return true;

@@ -17,7 +17,8 @@ bool icon_button(App& app, const char* id, const char* symbol, const char* toolt
                  const std::string& why_not = {});
 
 /// The program's blue button.
-bool accent_button(App& app, const char* label, ImVec2 size, const char* symbol = nullptr, bool enabled = true);
+bool accent_button(App& app, const char* label, ImVec2 size, const char* symbol = nullptr,
+                   bool enabled = true);
 
 /// A foldable heading; returns whether it is open. `*add` becomes true where its plus was clicked.
 /// `id` tells it from others, whatever the title says.
@@ -26,10 +27,10 @@ bool section(App& app, const char* id, const char* title, bool& open, bool* add 
 /// A label at the left of a row; the widget follows on the same line.
 void row_label(App& app, const char* text, float width);
 
-/// A number with one decimal that can be dragged or typed, with its unit inside at the right. Returns whether it changed; never gives
-/// a value that is not finite or outside [least, most].
-bool number_field(App& app, const char* id, double& value, const char* unit, float width, double step, double least,
-                  double most);
+/// A number with one decimal that can be dragged or typed, with its unit inside at the right. Returns whether
+/// it changed; never gives a value that is not finite or outside [least, most].
+bool number_field(App& app, const char* id, double& value, const char* unit, float width, double step,
+                  double least, double most);
 
 /// ImGui::BeginCombo with the program's chevron.
 bool begin_combo(App& app, const char* id, const char* shown, float width);

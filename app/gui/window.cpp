@@ -54,7 +54,9 @@ PointerEvent pointer_event(const App& app, Button button = Button::left) {
 
 /// Whether a press there is the canvas's: inside it, with nothing above it.
 bool on_canvas(const App& app, glm::dvec2 at) {
-    if (app.modal || at.x < 0 || at.y < 0 || at.x >= app.editor.canvas_size.x || at.y >= app.editor.canvas_size.y) return false;
+    if (app.modal || at.x < 0 || at.y < 0 || at.x >= app.editor.canvas_size.x ||
+        at.y >= app.editor.canvas_size.y)
+        return false;
     const ImVec2 p{float(at.x) + canvas_corner(app).x, float(at.y) + canvas_corner(app).y};
     return std::none_of(app.overlays.begin(), app.overlays.end(), [p](const auto& box) {
         return p.x >= box.first.x && p.y >= box.first.y && p.x < box.second.x && p.y < box.second.y;
@@ -81,13 +83,16 @@ void on_button(GLFWwindow* window, int which, int action, int mods) {
     App& app = app_of(window);
     app.wake();
     if (which > GLFW_MOUSE_BUTTON_MIDDLE) return;
-    const Button button = which == GLFW_MOUSE_BUTTON_LEFT ? Button::left : which == GLFW_MOUSE_BUTTON_MIDDLE ? Button::middle : Button::right;
+    const Button button = which == GLFW_MOUSE_BUTTON_LEFT     ? Button::left
+                          : which == GLFW_MOUSE_BUTTON_MIDDLE ? Button::middle
+                                                              : Button::right;
     const PointerEvent event = pointer_event(app, button);
     if (action == GLFW_RELEASE) return release(app.editor, event);
     if (!on_canvas(app, event.at) || ImGui::IsAnyItemActive()) return;
     const glm::dvec2 way = event.at - last_place;
     const double now = glfwGetTime();
-    const bool twice = button == Button::left && now - last_press < 0.4 && std::hypot(way.x, way.y) < app.px(5);
+    const bool twice =
+        button == Button::left && now - last_press < 0.4 && std::hypot(way.x, way.y) < app.px(5);
     last_press = button == Button::left && !twice ? now : -1;
     last_place = event.at;
     if (twice)
@@ -106,16 +111,26 @@ void on_scroll(GLFWwindow* window, double across, double steps) {
 
 int editor_key(int key) {
     switch (key) {
-        case GLFW_KEY_ESCAPE: return key_escape;
-        case GLFW_KEY_DELETE: return key_delete;
-        case GLFW_KEY_BACKSPACE: return key_backspace;
-        case GLFW_KEY_LEFT: return key_left;
-        case GLFW_KEY_RIGHT: return key_right;
-        case GLFW_KEY_UP: return key_up;
-        case GLFW_KEY_DOWN: return key_down;
-        case GLFW_KEY_KP_ADD: return '=';
-        case GLFW_KEY_KP_SUBTRACT: return '-';
-        default: return key > 0 && key < 127 ? key : 0;
+        case GLFW_KEY_ESCAPE:
+            return key_escape;
+        case GLFW_KEY_DELETE:
+            return key_delete;
+        case GLFW_KEY_BACKSPACE:
+            return key_backspace;
+        case GLFW_KEY_LEFT:
+            return key_left;
+        case GLFW_KEY_RIGHT:
+            return key_right;
+        case GLFW_KEY_UP:
+            return key_up;
+        case GLFW_KEY_DOWN:
+            return key_down;
+        case GLFW_KEY_KP_ADD:
+            return '=';
+        case GLFW_KEY_KP_SUBTRACT:
+            return '-';
+        default:
+            return key > 0 && key < 127 ? key : 0;
     }
 }
 
@@ -126,8 +141,8 @@ int layout_key(int key, int scancode) {
     return key;
 }
 
-/// ImGui looks at keys once a frame, so that a key pressed and released between two frames would be lost: its release
-/// is kept for the next frame.
+/// ImGui looks at keys once a frame, so that a key pressed and released between two frames would be lost: its
+/// release is kept for the next frame.
 struct KeyRelease {
     int key, scancode, mods;
 };
@@ -155,8 +170,11 @@ void on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
     App& app = app_of(window);
     app.wake();
     if (action == GLFW_RELEASE || app.modal || (mods & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return;
-    if (ImGui::GetIO().WantTextInput || (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field)) return;
-    const Shortcut shortcut{editor_key(layout_key(key, scancode)), (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0};
+    if (ImGui::GetIO().WantTextInput ||
+        (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field))
+        return;
+    const Shortcut shortcut{editor_key(layout_key(key, scancode)), (mods & GLFW_MOD_CONTROL) != 0,
+                            (mods & GLFW_MOD_SHIFT) != 0};
     if (shortcut.key != 0) press_key(app.editor, shortcut);
 }
 
@@ -217,7 +235,8 @@ struct Glfw {
         if (!glfwInit()) {
             const char* why = nullptr;
             glfwGetError(&why);
-            throw Error(fmt::format("cannot open a window: {}; probewarp render works without a display", why ? why : "no display"));
+            throw Error(fmt::format("cannot open a window: {}; probewarp render works without a display",
+                                    why ? why : "no display"));
         }
     }
     ~Glfw() { glfwTerminate(); }
@@ -286,7 +305,8 @@ void set_title(App& app) {
     static std::string shown;
     const std::string name = document_name(app);
     const bool dirty = has_picture(app.editor) && !is_saved(app.editor.history);
-    const std::string title = name.empty() ? "Probewarp" : fmt::format("{}{} – Probewarp", dirty ? "● " : "", name);
+    const std::string title =
+        name.empty() ? "Probewarp" : fmt::format("{}{} – Probewarp", dirty ? "● " : "", name);
     if (title != shown) glfwSetWindowTitle(app.window, title.c_str());
     shown = title;
 }
@@ -311,7 +331,8 @@ void draw_frame(App& app) {
     draw_about(app);
     draw_progress(app);
     draw_messages(app);
-    app.modal = is_busy(app) || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel) ||
+    app.modal = is_busy(app) ||
+                ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel) ||
                 app.file_dialog.open || app.export_dialog.open || app.about_open || !app.questions.empty();
     ImGui::Render();
     int width = 0, height = 0;

@@ -1,4 +1,5 @@
-// GIF's first frame, by hand: stb_image spends minutes on a stream that names strings beyond the frame (lzw.h).
+// GIF's first frame, by hand: stb_image spends minutes on a stream that names strings beyond the frame
+// (lzw.h).
 #include <algorithm>
 #include <array>
 

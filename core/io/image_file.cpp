@@ -121,7 +121,8 @@ void check_image_size(long long width, long long height, int bits) {
     const std::size_t needed = sides ? std::size_t(width * height * 4 * sample_bytes) : 0;
     if (sides && needed <= max_image_bytes) {
         if (needed + source_bytes <= max_decoding_bytes) return;
-        throw Error("needs " + std::to_string((needed + source_bytes) >> 20) + " MiB, the file and its pixels; expected at most " +
+        throw Error("needs " + std::to_string((needed + source_bytes) >> 20) +
+                    " MiB, the file and its pixels; expected at most " +
                     std::to_string(max_decoding_bytes >> 20));
     }
     throw Error("is " + std::to_string(width) + " x " + std::to_string(height) + " pixels; expected 1 to " +

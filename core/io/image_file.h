@@ -52,9 +52,9 @@ Picture decode_picture(std::vector<std::byte> bytes, const std::string& name);
 /// read_file and decode_picture.
 Picture read_picture(const std::filesystem::path& path);
 
-/// Throws Error unless width, height and depth (8 or 16) are within max_image_side and max_image_bytes, and within
-/// max_decoding_bytes together with the file that decode_picture is at. Readers call it with the header's numbers,
-/// before anything is allocated.
+/// Throws Error unless width, height and depth (8 or 16) are within max_image_side and max_image_bytes, and
+/// within max_decoding_bytes together with the file that decode_picture is at. Readers call it with the
+/// header's numbers, before anything is allocated.
 void check_image_size(long long width, long long height, int bits);
 
 }  // namespace probewarp

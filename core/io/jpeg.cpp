@@ -141,7 +141,8 @@ void read_header(Decoder& decoder, Bytes bytes) {
     });
     check_image_size(decoder.jpeg.image_width, decoder.jpeg.image_height, 8);
     // A progressive file's coefficients are there beside its bytes and its pixels.
-    const std::size_t others = bytes.size() + std::size_t(decoder.jpeg.image_width) * decoder.jpeg.image_height * 4;
+    const std::size_t others =
+        bytes.size() + std::size_t(decoder.jpeg.image_width) * decoder.jpeg.image_height * 4;
     decoder.jpeg.mem->max_memory_to_use = long(max_decoding_bytes - others);
     // The arithmetic decoder makes up zeros without end from no bytes at all, and nobody writes such files.
     if (decoder.jpeg.arith_code) throw Error("is arithmetic-coded; expected a Huffman-coded JPEG file");

@@ -30,7 +30,8 @@ std::optional<std::array<double, 7>> numbers(std::string_view row) {
         if ((comma == std::string_view::npos) != last) return {};
         const std::string_view field = trimmed(row.substr(0, comma));
         const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), values[i]);
-        if (error != std::errc() || end != field.data() + field.size() || !(std::abs(values[i]) <= largest)) return {};
+        if (error != std::errc() || end != field.data() + field.size() || !(std::abs(values[i]) <= largest))
+            return {};
         if (!last) row.remove_prefix(comma + 1);
     }
     return values;
@@ -57,18 +58,21 @@ std::vector<Probe> decode_probes_csv(std::string_view text, const Document& docu
         if (row.empty() || !in_probes) continue;
         const auto v = numbers(row);
         if (!v || !((*v)[6] > 0))
-            throw Error(fmt::format("line {} is wrong; expected ix,iy,itheta,x,y,theta,radius with a radius above 0", line));
+            throw Error(fmt::format(
+                "line {} is wrong; expected ix,iy,itheta,x,y,theta,radius with a radius above 0", line));
         const auto [ix, iy, itheta, x, y, theta, radius] = *v;
         Probe probe = new_probe(grown, middle + unit * glm::dvec2(ix, -iy));
         probe.now = middle + unit * glm::dvec2(x, -y);
         probe.angle = itheta - theta;  // theirs is anticlockwise
         probe.radius = unit * radius;
-        const double farthest = std::max({std::abs(probe.rest.x), std::abs(probe.rest.y), std::abs(probe.now.x),
-                                          std::abs(probe.now.y), probe.radius});
-        if (farthest > max_probe_coordinate || std::abs(probe.angle) > max_probe_angle || probe.radius < min_probe_radius)
-            throw Error(fmt::format("line {} is a probe too far away, turned too far, or with a radius out of range", line));
+        const double farthest = std::max({std::abs(probe.rest.x), std::abs(probe.rest.y),
+                                          std::abs(probe.now.x), std::abs(probe.now.y), probe.radius});
+        if (farthest > max_probe_coordinate || std::abs(probe.angle) > max_probe_angle ||
+            probe.radius < min_probe_radius)
+            throw Error(fmt::format(
+                "line {} is a probe too far away, turned too far, or with a radius out of range", line));
         grown.probes.push_back(probe);
-        if (grown.probes.size() > max_rows) throw Error(fmt::format("line {} is one probe too many", line));
+        if (grown.probes.size() > max_rows) throw Error(fmt::format("line {} is one probe too many; expected at most {}", line, max_rows));
     }
     if (!seen) throw Error("has no line that begins with #probes; expected a CSV of the iPad program");
     return {grown.probes.begin() + std::ptrdiff_t(before), grown.probes.end()};

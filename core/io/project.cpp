@@ -39,18 +39,22 @@ Json parse(std::span<const std::byte> bytes) {
     std::size_t values = 0;
     const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
         if (depth > max_json_depth)
-            throw Error(fmt::format("project.json is nested deeper than expected: at most {} levels", max_json_depth));
+            throw Error(fmt::format("project.json is nested deeper than expected: at most {} levels",
+                                    max_json_depth));
         // The library takes time in the square of these.
-        const bool nests = event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
+        const bool nests =
+            event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
         if (nests && ++values > max_json_values)
-            throw Error(fmt::format("project.json holds too much; expected at most {} objects and lists", max_json_values));
+            throw Error(fmt::format("project.json holds too much; expected at most {} objects and lists",
+                                    max_json_values));
         const auto level = std::size_t(depth);
         if (event == Json::parse_event_t::object_start) keys[level + 1].clear();
         if (event == Json::parse_event_t::key && !keys[level].insert(parsed.get<std::string>()).second)
             throw Error(fmt::format("project.json has the field \"{}\" twice; expected it once",
                                     printable(parsed.get<std::string>().substr(0, 80))));
         if (keys[level].size() > max_json_fields)
-            throw Error(fmt::format("project.json has an object with too many fields; expected at most {}", max_json_fields));
+            throw Error(fmt::format("project.json has an object with too many fields; expected at most {}",
+                                    max_json_fields));
         return true;
     };
     const auto* first = reinterpret_cast<const char*>(bytes.data());
@@ -72,7 +76,8 @@ class Fields {
 
     Error wrong(const std::string& field, std::string_view expected) const {
         return Error(fmt::format("project.json: {} is wrong or missing; expected {}",
-                                 place_.empty() || field.empty() ? place_ + field : place_ + "." + field, expected));
+                                 place_.empty() || field.empty() ? place_ + field : place_ + "." + field,
+                                 expected));
     }
     const Json& take(const char* field) {
         const auto found = json_.find(field);
@@ -97,22 +102,25 @@ class Fields {
     std::string text(const char* field, std::size_t longest) {
         const Json& value = take(field);
         std::string text = value.is_string() ? value.get<std::string>() : std::string();
-        if (!value.is_string() || text.size() > longest ||
-            std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
+        if (!value.is_string() || text.size() > longest || std::any_of(text.begin(), text.end(), [](char c) {
+                return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+            }))
             throw wrong(field, fmt::format("a line of text of at most {} bytes", longest));
         return text;
     }
     glm::dvec2 point(const char* field) {
         const Json& value = take(field);
         if (!value.is_array() || value.size() != 2) throw wrong(field, "two numbers");
-        return {checked(value[0], field, -max_probe_coordinate, max_probe_coordinate), checked(value[1], field, -max_probe_coordinate, max_probe_coordinate)};
+        return {checked(value[0], field, -max_probe_coordinate, max_probe_coordinate),
+                checked(value[1], field, -max_probe_coordinate, max_probe_coordinate)};
     }
     void finish() const {
         for (const auto& [key, value] : json_.items())
             if (!taken_.contains(key))
-                throw Error(fmt::format("project.json has the field \"{}\"{}, which this version does not know; expected "
-                                        "a project of this version",
-                                        printable(key.substr(0, 80)), place_.empty() ? "" : " in " + place_));
+                throw Error(fmt::format(
+                    "project.json has the field \"{}\"{}, which this version does not know; expected "
+                    "a project of this version",
+                    printable(key.substr(0, 80)), place_.empty() ? "" : " in " + place_));
     }
 
   private:
@@ -129,7 +137,8 @@ class Fields {
 
 Colour colour_from(Fields& fields) {
     const std::string text = fields.text("colour", 7);
-    if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdef", 1) != std::string::npos)
+    if (text.size() != 7 || text[0] != '#' ||
+        text.find_first_not_of("0123456789abcdef", 1) != std::string::npos)
         throw fields.wrong("colour", "#rrggbb in lower case");
     const unsigned long value = std::strtoul(text.c_str() + 1, nullptr, 16);
     return {std::uint8_t(value >> 16), std::uint8_t(value >> 8), std::uint8_t(value)};
@@ -197,9 +206,11 @@ Parsed parse_project(std::span<const std::byte> bytes) {
     parsed.document.cells = mesh.whole("cells", min_cells, max_cells);
     mesh.finish();
     parsed.document.weights = fields.text("weights", 80);
-    if (!find_weight_scheme(parsed.document.weights)) throw fields.wrong("weights", "a weight scheme that is known");
+    if (!find_weight_scheme(parsed.document.weights))
+        throw fields.wrong("weights", "a weight scheme that is known");
     parsed.document.blend = fields.text("blend", 80);
-    if (!find_blend_method(parsed.document.blend)) throw fields.wrong("blend", "a blend method that is known");
+    if (!find_blend_method(parsed.document.blend))
+        throw fields.wrong("blend", "a blend method that is known");
     const Json& probes = fields.take("probes");
     if (!probes.is_array() || probes.size() > max_probes)
         throw fields.wrong("probes", fmt::format("a list of at most {} probes", max_probes));
@@ -219,15 +230,19 @@ Document decode(std::vector<std::byte> bytes) {
     if (members.empty() || members[0].name != "mimetype" || members[0].bytes != to_bytes(project_mimetype))
         throw Error("is not a Probewarp project; expected a ZIP archive whose first member is its mimetype");
     const auto find = [&members](const std::string& name) {
-        const auto found = std::find_if(members.begin(), members.end(), [&](const auto& m) { return m.name == name; });
-        if (found == members.end()) throw Error(fmt::format("has no member {}; expected it in a project", printable(name)));
+        const auto found =
+            std::find_if(members.begin(), members.end(), [&](const auto& m) { return m.name == name; });
+        if (found == members.end())
+            throw Error(fmt::format("has no member {}; expected it in a project", printable(name)));
         return found;
     };
     Parsed parsed = parse_project(find("project.json")->bytes);
     auto image = find(parsed.image_file);
     for (const ZipMember& member : members)
         if (member.name != "mimetype" && member.name != "project.json" && member.name != parsed.image_file)
-            throw Error(fmt::format("has a member {} that this version does not know; expected a project of this version", member.name));
+            throw Error(fmt::format(
+                "has a member {} that this version does not know; expected a project of this version",
+                member.name));
     Picture picture = decode_picture(std::move(image->bytes), parsed.image_file);
     picture.name = parsed.image_name;
     parsed.document.picture = std::make_shared<const Picture>(std::move(picture));
@@ -247,7 +262,8 @@ std::vector<std::byte> encode_project(const Document& document) {
                     {"weights", document.weights},
                     {"blend", document.blend},
                     {"probes", std::move(probes)}};
-    const std::vector<std::byte> text = to_bytes(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    const std::vector<std::byte> text =
+        to_bytes(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     parse_project(text);  // a save that would not open again must fail now, while the document is still there
     // The picture is stored as it is: its own format has compressed it already, or it is quick to write.
     const ZipMember members[] = {{"mimetype", to_bytes(project_mimetype), true},
@@ -260,7 +276,8 @@ Document decode_project(std::vector<std::byte> bytes, const std::string& name) {
     try {
         return decode(std::move(bytes));
     } catch (const Error& error) {
-        throw Error(fmt::format("{}: {}", printable(name), printable(error.what())));  // names inside may hold anything
+        throw Error(fmt::format("{}: {}", printable(name),
+                                printable(error.what())));  // names inside may hold anything
     }
 }
 

@@ -16,8 +16,8 @@ inline constexpr int project_format = 1;
 inline constexpr const char* project_extension = ".probewarp";
 inline constexpr const char* project_mimetype = "application/x-probewarp";
 
-/// The document as a project file. Requires a picture. The same document gives the same bytes. Throws Error where
-/// the file would not open again: a probe beyond the limits of probe.h, a name that is too long.
+/// The document as a project file. Requires a picture. The same document gives the same bytes. Throws Error
+/// where the file would not open again: a probe beyond the limits of probe.h, a name that is too long.
 std::vector<std::byte> encode_project(const Document& document);
 
 /// Throws Error: "NAME: what is wrong; what is expected". Fields that this version does not know are refused,

@@ -1,4 +1,5 @@
-// PSD's merged picture, by hand: stb_image's 16-bit run lengths are wrong, and its removal of a white matte overflows.
+// PSD's merged picture, by hand: stb_image's 16-bit run lengths are wrong, and its removal of a white matte
+// overflows.
 #include <algorithm>
 #include <array>
 #include <limits>

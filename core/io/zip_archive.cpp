@@ -54,14 +54,17 @@ Owned<zip_t> open_for_reading(std::span<const std::byte> bytes) {
     zip_error_t error;
     zip_error_init(&error);
     Owned<zip_source_t> source(zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error));
-    Owned<zip_t> archive(source ? zip_open_from_source(source.get(), ZIP_RDONLY | ZIP_CHECKCONS, &error) : nullptr);
+    Owned<zip_t> archive(source ? zip_open_from_source(source.get(), ZIP_RDONLY | ZIP_CHECKCONS, &error)
+                                : nullptr);
     zip_error_fini(&error);
-    if (!archive) throw Error("is damaged or truncated; expected a whole ZIP archive without doubled members");
+    if (!archive)
+        throw Error("is damaged or truncated; expected a whole ZIP archive without doubled members");
     source.release();  // the archive owns it now
     return archive;
 }
 
-std::vector<std::byte> read_member(zip_t* archive, zip_uint64_t index, std::size_t size, const std::string& name) {
+std::vector<std::byte> read_member(zip_t* archive, zip_uint64_t index, std::size_t size,
+                                   const std::string& name) {
     Owned<zip_file_t> file(zip_fopen_index(archive, index, 0));
     std::vector<std::byte> bytes(file ? size : 0);
     std::byte past{};
@@ -87,14 +90,19 @@ std::vector<ZipMember> read_zip(std::span<const std::byte> bytes, std::size_t li
     std::size_t total = 0;
     for (zip_uint64_t i = 0; i < zip_uint64_t(count); ++i) {
         zip_stat_t stat;
-        constexpr zip_uint64_t needed = ZIP_STAT_NAME | ZIP_STAT_SIZE | ZIP_STAT_COMP_METHOD | ZIP_STAT_ENCRYPTION_METHOD;
+        constexpr zip_uint64_t needed =
+            ZIP_STAT_NAME | ZIP_STAT_SIZE | ZIP_STAT_COMP_METHOD | ZIP_STAT_ENCRYPTION_METHOD;
         if (zip_stat_index(archive.get(), i, ZIP_FL_ENC_GUESS, &stat) != 0 || (stat.valid & needed) != needed)
             throw Error("is damaged; expected a whole ZIP archive");
         const std::string name = stat.name;
-        if (!stays_inside(name)) throw Error("has a member whose name points out of the archive; expected names inside it");
-        if (!names.insert(name).second) throw Error(fmt::format("has two members named {}; expected one", name));
-        if (stat.encryption_method != ZIP_EM_NONE) throw Error(fmt::format("has an encrypted member {}; expected none", name));
-        if (stat.size > limit - total) throw Error(fmt::format("holds more than expected: at most {} MiB", limit >> 20));
+        if (!stays_inside(name))
+            throw Error("has a member whose name points out of the archive; expected names inside it");
+        if (!names.insert(name).second)
+            throw Error(fmt::format("has two members named {}; expected one", name));
+        if (stat.encryption_method != ZIP_EM_NONE)
+            throw Error(fmt::format("has an encrypted member {}; expected none", name));
+        if (stat.size > limit - total)
+            throw Error(fmt::format("holds more than expected: at most {} MiB", limit >> 20));
         total += std::size_t(stat.size);
         members.push_back({name, read_member(archive.get(), i, std::size_t(stat.size), name),
                            stat.comp_method == ZIP_CM_STORE});
@@ -103,7 +111,9 @@ std::vector<ZipMember> read_zip(std::span<const std::byte> bytes, std::size_t li
 }
 
 std::vector<std::byte> write_zip(std::span<const ZipMember> members) {
-    const auto failed = [](const char* what) { return Error(fmt::format("the ZIP archive cannot be made: {}", what)); };
+    const auto failed = [](const char* what) {
+        return Error(fmt::format("the ZIP archive cannot be made: {}", what));
+    };
     zip_error_t error;
     zip_error_init(&error);
     Owned<zip_source_t> result(zip_source_buffer_create(nullptr, 0, 0, &error));
@@ -128,7 +138,8 @@ std::vector<std::byte> write_zip(std::span<const ZipMember> members) {
     archive.release();
 
     zip_stat_t stat;
-    if (zip_source_stat(result.get(), &stat) != 0 || zip_source_open(result.get()) != 0) throw failed("no result");
+    if (zip_source_stat(result.get(), &stat) != 0 || zip_source_open(result.get()) != 0)
+        throw failed("no result");
     std::vector<std::byte> bytes(stat.size);
     const zip_int64_t read = zip_source_read(result.get(), bytes.data(), bytes.size());
     zip_source_close(result.get());

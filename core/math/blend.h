@@ -1,5 +1,6 @@
 // Blending of rigid transformations: one function a method, spans in.
-// DLB is MKO section 5 (arXiv 1601.01754), after Kavan et al., "Dual Quaternions for Rigid Transformation Blending".
+// DLB is MKO section 5 (arXiv 1601.01754), after Kavan et al., "Dual Quaternions for Rigid Transformation
+// Blending".
 #pragma once
 
 #include <cassert>

@@ -107,8 +107,8 @@ DualComplex<T> exp(const DualComplexLog<T>& x) {
     return {std::polar(T(1), x.h), sinc(x.h) * x.p1};
 }
 
-/// The inverse of exp for a unit DCN, with h in [-pi, pi). At h = -pi (a whole turn that also shifts) no logarithm
-/// exists; rounding keeps sinc away from zero there, and the p1 returned is huge.
+/// The inverse of exp for a unit DCN, with h in [-pi, pi). At h = -pi (a whole turn that also shifts) no
+/// logarithm exists; rounding keeps sinc away from zero there, and the p1 returned is huge.
 template <class T>
 DualComplexLog<T> log(const DualComplex<T>& p) {
     T h = std::arg(p.p0);

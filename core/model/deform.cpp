@@ -54,13 +54,15 @@ std::size_t deform_dlb(std::span<const glm::vec2> rest, std::span<const float> w
 
 std::span<const BlendMethod> blend_methods() {
     static constexpr std::array<BlendMethod, 1> methods{
-        {{"dlb", "DLB: keeps shapes rigid", &deform_dlb, [](auto weights, auto p) { return dlb(weights, p).p; }}}};
+        {{"dlb", "DLB: keeps shapes rigid", &deform_dlb,
+          [](auto weights, auto p) { return dlb(weights, p).p; }}}};
     return methods;
 }
 
 const BlendMethod* find_blend_method(std::string_view name) {
     const auto methods = blend_methods();
-    const auto found = std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.name == name; });
+    const auto found =
+        std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.name == name; });
     return found == methods.end() ? nullptr : &*found;
 }
 

@@ -33,8 +33,8 @@ std::span<const BlendMethod> blend_methods();
 /// The method of that name, or null.
 const BlendMethod* find_blend_method(std::string_view name);
 
-/// Deforms by DLB without a square root: with s = sum w_i p_i the vertex moves by 2 s0 (i Im(s0) v + s1) / |s0|^2,
-/// which is (s0^2 v + 2 s0 s1) / |s0|^2 - v, written so that it is exactly 0 where no probe moved.
+/// Deforms by DLB without a square root: with s = sum w_i p_i the vertex moves by 2 s0 (i Im(s0) v + s1) /
+/// |s0|^2, which is (s0^2 v + 2 s0 s1) / |s0|^2 - v, written so that it is exactly 0 where no probe moved.
 std::size_t deform_dlb(std::span<const glm::vec2> rest, std::span<const float> weights,
                        std::span<const DualComplex<float>> transformations, glm::vec2 centre,
                        std::span<glm::vec2> now);

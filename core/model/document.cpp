@@ -33,7 +33,8 @@ Probe new_probe(const Document& document, glm::dvec2 rest) {
     probe.colour = probe_colour(probe.id - 1);
     probe.rest = probe.now = rest;
     if (document.picture)
-        probe.radius = std::max(1.0, std::max(document.picture->image.width, document.picture->image.height) / 8.0);
+        probe.radius =
+            std::max(1.0, std::max(document.picture->image.width, document.picture->image.height) / 8.0);
     return probe;
 }
 
@@ -55,17 +56,19 @@ void check_size(const Document& document) {
     const auto [columns, rows] = grid_size(image.width, image.height, document.cells);
     const std::size_t vertices = std::size_t(columns + 1) * std::size_t(rows + 1);
     if (vertices * document.probes.size() > max_weights)
-        throw Error(fmt::format("{} vertices times {} probes are more than the {} weights that fit: choose a coarser "
-                                "mesh or fewer probes",
-                                vertices, document.probes.size(), max_weights));
+        throw Error(
+            fmt::format("{} vertices times {} probes are more than the {} weights that fit: choose a coarser "
+                        "mesh or fewer probes",
+                        vertices, document.probes.size(), max_weights));
 }
 
 namespace {
 
 bool same_weights(const Document& a, const Document& b) {
-    return a.weights == b.weights &&
-           std::equal(a.probes.begin(), a.probes.end(), b.probes.begin(), b.probes.end(),
-                      [](const Probe& p, const Probe& q) { return p.rest == q.rest && p.radius == q.radius; });
+    return a.weights == b.weights && std::equal(a.probes.begin(), a.probes.end(), b.probes.begin(),
+                                                b.probes.end(), [](const Probe& p, const Probe& q) {
+                                                    return p.rest == q.rest && p.radius == q.radius;
+                                                });
 }
 
 }  // namespace
@@ -93,8 +96,8 @@ void update(Deformation& deformation, const Document& document) {
         deformation.transformations.push_back(cast<float>(transformation(probe, middle)));
     deformation.now.resize(deformation.mesh.rest.size());
     deformation.cancelled = find_blend_method(document.blend)
-                                ->deform(deformation.mesh.rest, deformation.weights, deformation.transformations,
-                                         glm::vec2(middle), deformation.now);
+                                ->deform(deformation.mesh.rest, deformation.weights,
+                                         deformation.transformations, glm::vec2(middle), deformation.now);
     deformation.source = document;
     ++deformation.version;
 }

@@ -13,7 +13,7 @@
 namespace probewarp {
 
 struct Document {
-    PicturePtr picture;         ///< shared: undo keeps many documents and one picture; null only before one is open
+    PicturePtr picture;  ///< shared: undo keeps many documents and one picture; null only before one is open
     std::vector<Probe> probes;  ///< in the order they were put down, ids unique
     int cells = default_cells;  ///< of the mesh, along the picture's longer side
     std::string weights{weight_schemes()[0].name};
@@ -32,14 +32,15 @@ const Probe* find_probe(const Document& document, int id);
 /// A probe at `rest` with a fresh id, the next colour, and a reach of an eighth of the picture's longer side.
 Probe new_probe(const Document& document, glm::dvec2 rest);
 
-/// Puts another picture under the probes. Where its size differs, they keep their places relative to its centre and
-/// its longer side.
+/// Puts another picture under the probes. Where its size differs, they keep their places relative to its
+/// centre and its longer side.
 void replace_picture(Document& document, PicturePtr picture);
 
 /// Throws Error where the mesh and the probes together would need more than max_weights weights.
 void check_size(const Document& document);
 
-/// A document's deformation, worked out from it and kept: only what changed since the last update is computed anew.
+/// A document's deformation, worked out from it and kept: only what changed since the last update is computed
+/// anew.
 struct Deformation {
     Mesh mesh;
     std::vector<float> weights;                       ///< #vertices x #probes, row-major

@@ -15,7 +15,10 @@ std::array<int, 4> pixel(const Image& image, int x, int y) {
     assert(x >= 0 && x < image.width && y >= 0 && y < image.height);
     const std::size_t at = (std::size_t(y) * std::size_t(image.width) + std::size_t(x)) * 4;
     return std::visit(
-        [at](const auto& s) { return std::array<int, 4>{s[at], s[at + 1], s[at + 2], s[at + 3]}; }, image.rgba);
+        [at](const auto& s) {
+            return std::array<int, 4>{s[at], s[at + 1], s[at + 2], s[at + 3]};
+        },
+        image.rgba);
 }
 
 bool has_alpha(const Image& image) {

@@ -1,4 +1,5 @@
-// A picture in memory: straight-alpha RGBA of 8 or 16 bits, with what the file said about its colours and size.
+// A picture in memory: straight-alpha RGBA of 8 or 16 bits, with what the file said about its colours and
+// size.
 #pragma once
 
 #include <array>

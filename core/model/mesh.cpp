@@ -27,7 +27,8 @@ Mesh grid_mesh(int width, int height, int cells) {
         for (int x = 0; x < columns; ++x) {
             const auto top_left = std::uint32_t(y * (columns + 1) + x), top_right = top_left + 1;
             const auto bottom_left = top_left + std::uint32_t(columns + 1), bottom_right = bottom_left + 1;
-            for (std::uint32_t corner : {top_left, bottom_right, top_right, top_left, bottom_left, bottom_right})
+            for (std::uint32_t corner :
+                 {top_left, bottom_right, top_right, top_left, bottom_left, bottom_right})
                 mesh.triangles.push_back(corner);
         }
     return mesh;
@@ -54,7 +55,8 @@ std::optional<MeshPoint> locate(const Mesh& mesh, std::span<const glm::vec2> ver
     assert(vertices.size() == mesh.rest.size());
     for (std::size_t t = mesh.triangles.size(); t > 0; t -= 3) {
         const std::array corners{mesh.triangles[t - 3], mesh.triangles[t - 2], mesh.triangles[t - 1]};
-        if (const auto at = barycentric(vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], point))
+        if (const auto at =
+                barycentric(vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], point))
             return MeshPoint{corners, *at};
     }
     return {};

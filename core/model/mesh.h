@@ -20,7 +20,8 @@ struct Mesh {
     int rows = 0;     ///< cells along y
     /// #vertices = (columns + 1) (rows + 1), row by row from the top-left corner; image pixels.
     std::vector<glm::vec2> rest;
-    /// #triangles x 3 places in `rest`; two triangles a cell, cut from its top-left to its bottom-right corner.
+    /// #triangles x 3 places in `rest`; two triangles a cell, cut from its top-left to its bottom-right
+    /// corner.
     std::vector<std::uint32_t> triangles;
 };
 

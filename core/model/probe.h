@@ -16,10 +16,11 @@ struct Colour {
     friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// What a project file holds. Whatever reads probes keeps to it, so that what was opened can be saved and opened again.
-inline constexpr double max_probe_coordinate = 1e7;    // image pixels, of rest and now and the radius
-inline constexpr double max_probe_angle = 1e6;         // radians
-inline constexpr double min_probe_radius = 1e-3;       // image pixels
+/// What a project file holds. Whatever reads probes keeps to it, so that what was opened can be saved and
+/// opened again.
+inline constexpr double max_probe_coordinate = 1e7;  // image pixels, of rest and now and the radius
+inline constexpr double max_probe_angle = 1e6;       // radians
+inline constexpr double min_probe_radius = 1e-3;     // image pixels
 inline constexpr int max_probe_id = 2'000'000'000;
 
 struct Probe {
@@ -36,14 +37,15 @@ struct Probe {
     friend bool operator==(const Probe&, const Probe&) = default;
 };
 
-/// The probe's transformation about `centre` (image pixels): turn by the angle about rest, then move rest to now.
-/// Exactly 1 for a probe that was not moved.
+/// The probe's transformation about `centre` (image pixels): turn by the angle about rest, then move rest to
+/// now. Exactly 1 for a probe that was not moved.
 DualComplex<double> transformation(const Probe& probe, glm::dvec2 centre);
 
 /// Whether the probe stands where it was put, unturned.
 bool at_rest(const Probe& probe);
 
-/// Colours of new probes in turn: Okabe and Ito's, which colour-blind people can tell apart, then lighter ones.
+/// Colours of new probes in turn: Okabe and Ito's, which colour-blind people can tell apart, then lighter
+/// ones.
 Colour probe_colour(int index);
 
 /// "#rrggbb".

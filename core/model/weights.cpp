@@ -14,8 +14,8 @@ void inverse_distance_weights(std::span<const Probe> probes, glm::dvec2 vertex, 
         const glm::dvec2 d = (vertex - probe.rest) / probe.radius;
         return d.x * d.x + d.y * d.y;
     };
-    // The probe that weighs most has the smallest ratio; dividing by it keeps every weight in [0, 1] however near
-    // the probe is.
+    // The probe that weighs most has the smallest ratio; dividing by it keeps every weight in [0, 1] however
+    // near the probe is.
     double least = std::numeric_limits<double>::infinity();
     for (const Probe& probe : probes) least = std::min(least, ratio(probe));
     for (std::size_t i = 0; i < probes.size(); ++i) {
@@ -32,7 +32,8 @@ std::span<const WeightScheme> weight_schemes() {
 
 const WeightScheme* find_weight_scheme(std::string_view name) {
     const auto schemes = weight_schemes();
-    const auto found = std::find_if(schemes.begin(), schemes.end(), [&](const auto& s) { return s.name == name; });
+    const auto found =
+        std::find_if(schemes.begin(), schemes.end(), [&](const auto& s) { return s.name == name; });
     return found == schemes.end() ? nullptr : &*found;
 }
 

@@ -28,8 +28,8 @@ std::span<const WeightScheme> weight_schemes();
 /// The scheme of that name, or null.
 const WeightScheme* find_weight_scheme(std::string_view name);
 
-/// radius_i^2 / |vertex - rest_i|^2, scaled so that the largest is 1; where probes sit on the vertex, 1 for them and
-/// 0 for the others (as in the original system).
+/// radius_i^2 / |vertex - rest_i|^2, scaled so that the largest is 1; where probes sit on the vertex, 1 for
+/// them and 0 for the others (as in the original system).
 void inverse_distance_weights(std::span<const Probe> probes, glm::dvec2 vertex, std::span<float> weights);
 
 /// The weights of all vertices: #vertices x #probes, row-major.

@@ -34,7 +34,8 @@ std::unique_ptr<Context> open_context(std::string_view name) {
             lacks += fmt::format("{}{}: {}", lacks.empty() ? "" : "; ", backend.name, error.what());
         }
     }
-    if (lacks.empty()) throw Error(fmt::format("there is no backend named {}; expected auto, osmesa or egl", name));
+    if (lacks.empty())
+        throw Error(fmt::format("there is no backend named {}; expected auto, osmesa or egl", name));
     throw Error(fmt::format("cannot render without a display ({})", lacks));
 }
 
@@ -50,7 +51,8 @@ void load_gl(GlLookUp look_up) {
 std::string renderer_name() {
     const auto* text = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     std::string name = text ? text : "unknown";
-    return name.substr(0, name.find_first_of("(/") == std::string::npos ? name.size() : name.find_first_of("(/") - 1);
+    return name.substr(
+        0, name.find_first_of("(/") == std::string::npos ? name.size() : name.find_first_of("(/") - 1);
 }
 
 }  // namespace probewarp

@@ -1,4 +1,5 @@
-// The OpenGL context: one a process. Offscreen ones are opened here; the window brings its own and only loads.
+// The OpenGL context: one a process. Offscreen ones are opened here; the window brings its own and only
+// loads.
 #pragma once
 
 #include <memory>

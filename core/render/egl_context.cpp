@@ -27,7 +27,8 @@ struct Egl final : Context {
         const auto query = function<decltype(&eglQueryString)>("eglQueryString");
         const char* known = query(EGL_NO_DISPLAY, EGL_EXTENSIONS);
         const auto has = [known](const char* name) { return known && std::strstr(known, name); };
-        const auto platform = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(look_up("eglGetPlatformDisplayEXT"));
+        const auto platform =
+            reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(look_up("eglGetPlatformDisplayEXT"));
         std::vector<EGLDisplay> found;
         if (!platform) return found;
         if (has("EGL_EXT_platform_device") && has("EGL_EXT_device_enumeration")) {
@@ -47,24 +48,31 @@ struct Egl final : Context {
         EGLint major = 0, minor = 0;
         if (!function<decltype(&eglInitialize)>("eglInitialize")(candidate, &major, &minor)) return false;
         function<decltype(&eglBindAPI)>("eglBindAPI")(EGL_OPENGL_API);
-        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
-                                     EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                     3,
+                                     EGL_CONTEXT_MINOR_VERSION,
+                                     3,
+                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                     EGL_NONE};
         const EGLint any[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_NONE};
         EGLConfig config = nullptr;
         EGLint count = 0;
         function<decltype(&eglChooseConfig)>("eglChooseConfig")(candidate, any, &config, 1, &count);
-        context = function<decltype(&eglCreateContext)>("eglCreateContext")(candidate, count > 0 ? config : nullptr,
-                                                                            EGL_NO_CONTEXT, attributes);
+        context = function<decltype(&eglCreateContext)>("eglCreateContext")(
+            candidate, count > 0 ? config : nullptr, EGL_NO_CONTEXT, attributes);
         display = candidate;
         const auto make_current = function<decltype(&eglMakeCurrent)>("eglMakeCurrent");
-        if (context != EGL_NO_CONTEXT && make_current(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return true;
+        if (context != EGL_NO_CONTEXT && make_current(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
+            return true;
         close();
         return false;
     }
 
     void close() {
         if (display == EGL_NO_DISPLAY) return;
-        function<decltype(&eglMakeCurrent)>("eglMakeCurrent")(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        function<decltype(&eglMakeCurrent)>("eglMakeCurrent")(display, EGL_NO_SURFACE, EGL_NO_SURFACE,
+                                                              EGL_NO_CONTEXT);
         if (context != EGL_NO_CONTEXT)
             function<decltype(&eglDestroyContext)>("eglDestroyContext")(display, context);
         function<decltype(&eglTerminate)>("eglTerminate")(display);

@@ -33,10 +33,10 @@ Box bounds(const Deformation& deformation) {
 void check_export_size(double width, double height, int bits) {
     if (width > max_image_side || height > max_image_side ||
         width * height * 4 * (bits / 8) > double(max_image_bytes))
-        throw Error(fmt::format("the export would be {:.0f} x {:.0f} pixels; at most {} along a side and {} million "
-                                "in all fit: choose a smaller scale",
-                                width, height, max_image_side,
-                                max_image_bytes / std::size_t(4 * (bits / 8)) / 1000000));
+        throw Error(fmt::format(
+            "the export would be {:.0f} x {:.0f} pixels; at most {} along a side and {} million "
+            "in all fit: choose a smaller scale",
+            width, height, max_image_side, max_image_bytes / std::size_t(4 * (bits / 8)) / 1000000));
 }
 
 }  // namespace

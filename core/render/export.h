@@ -17,18 +17,19 @@ enum class Canvas {
 inline constexpr int max_samples = 16;
 
 struct ExportSettings {
-    double scale = 1;                        ///< exported pixels per image pixel, > 0
-    std::optional<std::array<int, 2>> size;  ///< width, height: the largest scale that fits, centred; overrides scale
-    int samples = 1;                         ///< samples x samples a pixel, in [1, max_samples]
+    double scale = 1;  ///< exported pixels per image pixel, > 0
+    std::optional<std::array<int, 2>>
+        size;         ///< width, height: the largest scale that fits, centred; overrides scale
+    int samples = 1;  ///< samples x samples a pixel, in [1, max_samples]
     Canvas canvas = Canvas::image;
-    std::optional<Colour> background;        ///< empty: as transparent as the picture is
+    std::optional<Colour> background;  ///< empty: as transparent as the picture is
 };
 
 /// What the whole export shows. Throws Error where it would be larger than a picture may be.
 View export_view(const Document& document, const Deformation& deformation, const ExportSettings& settings);
 
-/// One export under way: the renderer must hold the document's picture and deformed mesh, and be left alone until
-/// done. Tiles keep each step short and the size unlimited by textures.
+/// One export under way: the renderer must hold the document's picture and deformed mesh, and be left alone
+/// until done. Tiles keep each step short and the size unlimited by textures.
 class ExportJob {
   public:
     ExportJob(Renderer& renderer, const Document& document, const Deformation& deformation,

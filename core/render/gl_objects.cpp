@@ -61,7 +61,8 @@ GlProgram make_program(const Shader& vertex, const Shader& fragment) {
         GLsizei written = 0;
         glGetProgramInfoLog(program.name(), GLsizei(log.size()), &written, log.data());
         log.resize(std::size_t(written));
-        throw Error(fmt::format("{} with {}: the graphics driver cannot link them: {}", vertex.file, fragment.file, log));
+        throw Error(fmt::format("{} with {}: the graphics driver cannot link them: {}", vertex.file,
+                                fragment.file, log));
     }
     return program;
 }
@@ -85,8 +86,8 @@ void resize(Target& target, int width, int height, GLenum format) {
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.texture.name(), 0);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw Error(fmt::format("the graphics driver cannot draw into a {} x {} target of format 0x{:x}", width, height,
-                                format));
+        throw Error(fmt::format("the graphics driver cannot draw into a {} x {} target of format 0x{:x}",
+                                width, height, format));
     target.width = width;
     target.height = height;
     target.format = format;
@@ -97,7 +98,8 @@ void check_gl(const char* what) {
     if (error == GL_NO_ERROR) return;
     while (glGetError() != GL_NO_ERROR) {
     }
-    if (error == GL_OUT_OF_MEMORY) throw Error(fmt::format("{}: the graphics driver ran out of memory", what));
+    if (error == GL_OUT_OF_MEMORY)
+        throw Error(fmt::format("{}: the graphics driver ran out of memory", what));
     throw Error(fmt::format("{}: the graphics driver reports error 0x{:x}", what, error));
 }
 

@@ -66,8 +66,8 @@ struct Target {
     GlFramebuffer framebuffer;
 };
 
-/// Makes `target` the size and format asked for, keeping it where it already is. Throws Error where the driver
-/// cannot draw into it.
+/// Makes `target` the size and format asked for, keeping it where it already is. Throws Error where the
+/// driver cannot draw into it.
 void resize(Target& target, int width, int height, GLenum format);
 
 /// Throws Error naming `what` where GL reports one.

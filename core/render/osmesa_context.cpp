@@ -16,11 +16,18 @@ struct OSMesa final : Context {
     std::array<unsigned char, 16 * 16 * 4> unused{};
 
     OSMesa() {
-        const auto create = library.function<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
+        const auto create =
+            library.function<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
         const auto make_current = library.function<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent");
-        const int attributes[] = {OSMESA_FORMAT,  OSMESA_RGBA, OSMESA_PROFILE,
-                                  OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION,
-                                  3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+        const int attributes[] = {OSMESA_FORMAT,
+                                  OSMESA_RGBA,
+                                  OSMESA_PROFILE,
+                                  OSMESA_CORE_PROFILE,
+                                  OSMESA_CONTEXT_MAJOR_VERSION,
+                                  3,
+                                  OSMESA_CONTEXT_MINOR_VERSION,
+                                  3,
+                                  0};
         context = create(attributes, nullptr);
         if (!context) throw Error("OSMesa has no OpenGL 3.3 core");
         if (!make_current(context, unused.data(), GL_UNSIGNED_BYTE, 16, 16)) {

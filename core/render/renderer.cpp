@@ -18,7 +18,8 @@ std::vector<Sample> half_size(const std::vector<Sample>& from, int width, int he
         for (int x = 0; x < half_width; ++x) {
             const int right = std::min(2 * x + 1, width - 1), below = std::min(2 * y + 1, height - 1);
             std::uint64_t sum[4]{}, plain[3]{};
-            for (const auto& [px, py] : {std::array{2 * x, 2 * y}, {right, 2 * y}, {2 * x, below}, {right, below}}) {
+            for (const auto& [px, py] :
+                 {std::array{2 * x, 2 * y}, {right, 2 * y}, {2 * x, below}, {right, below}}) {
                 const Sample* p = &from[(std::size_t(py) * std::size_t(width) + std::size_t(px)) * 4];
                 for (int k = 0; k < 3; ++k) sum[k] += std::uint64_t(p[k]) * p[3], plain[k] += p[k];
                 sum[3] += p[3];
@@ -34,7 +35,9 @@ std::vector<Sample> half_size(const std::vector<Sample>& from, int width, int he
 void set(const GlProgram& program, const char* name, glm::dvec2 v) {
     glUniform2f(uniform(program, name), float(v.x), float(v.y));
 }
-void set(const GlProgram& program, const char* name, glm::vec3 v) { glUniform3f(uniform(program, name), v.x, v.y, v.z); }
+void set(const GlProgram& program, const char* name, glm::vec3 v) {
+    glUniform3f(uniform(program, name), v.x, v.y, v.z);
+}
 void set(const GlProgram& program, const char* name, glm::vec4 v) {
     glUniform4f(uniform(program, name), v.x, v.y, v.z, v.w);
 }
@@ -54,14 +57,16 @@ void begin(const Target& target) {
     glActiveTexture(GL_TEXTURE0);
 }
 
-void upload_vertices(const GlBuffer& buffer, std::span<const glm::vec2> points, GLuint location, GLenum usage) {
+void upload_vertices(const GlBuffer& buffer, std::span<const glm::vec2> points, GLuint location,
+                     GLenum usage) {
     glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
     glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(points.size_bytes()), points.data(), usage);
     glVertexAttribPointer(location, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
     glEnableVertexAttribArray(location);
 }
 
-void upload_texels(const GlBuffer& buffer, const GlTexture& texture, std::span<const std::byte> bytes, GLenum format) {
+void upload_texels(const GlBuffer& buffer, const GlTexture& texture, std::span<const std::byte> bytes,
+                   GLenum format) {
     glBindBuffer(GL_TEXTURE_BUFFER, buffer.name());
     glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(bytes.size()), bytes.data(), GL_STREAM_DRAW);
     glBindTexture(GL_TEXTURE_BUFFER, texture.name());
@@ -77,7 +82,8 @@ std::vector<Image> smaller_levels(const Image& image) {
         Image next;
         next.width = std::max(1, from->width / 2);
         next.height = std::max(1, from->height / 2);
-        std::visit([&](const auto& samples) { next.rgba = half_size(samples, from->width, from->height); }, from->rgba);
+        std::visit([&](const auto& samples) { next.rgba = half_size(samples, from->width, from->height); },
+                   from->rgba);
         levels.push_back(std::move(next));
         from = &levels.back();
     }
@@ -113,7 +119,8 @@ void check_texture_size(const Image& image) {
                                 image.width, image.height, largest, largest));
 }
 
-PictureUpload::PictureUpload(const Image& image, std::span<const Image> levels) : image_(image), levels_(levels) {
+PictureUpload::PictureUpload(const Image& image, std::span<const Image> levels)
+    : image_(image), levels_(levels) {
     check_texture_size(image);
     texture_ = {make_texture(), image.width, image.height, int(levels.size())};
     glBindTexture(GL_TEXTURE_2D, texture_.texture.name());
@@ -122,8 +129,8 @@ PictureUpload::PictureUpload(const Image& image, std::span<const Image> levels) 
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     for (int level = 0; level <= texture_.last_level; ++level) {
         const Image& from = level == 0 ? image : levels[std::size_t(level) - 1];
-        glTexImage2D(GL_TEXTURE_2D, level, image.bits() == 16 ? GL_RGBA16 : GL_RGBA8, from.width, from.height, 0,
-                     GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        glTexImage2D(GL_TEXTURE_2D, level, image.bits() == 16 ? GL_RGBA16 : GL_RGBA8, from.width, from.height,
+                     0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     }
     check_gl("making room for the picture");
 }
@@ -201,8 +208,9 @@ void Renderer::set_blend(std::span<const float> weights, std::span<const DualCom
     GLint largest = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &largest);
     if (weights.size() > std::size_t(largest))
-        throw Error(fmt::format("{} weights are more than the {} that this graphics driver's shaders can read",
-                                weights.size(), largest));
+        throw Error(
+            fmt::format("{} weights are more than the {} that this graphics driver's shaders can read",
+                        weights.size(), largest));
     upload_texels(weights_, weights_texture_, std::as_bytes(weights), GL_R32F);
     static_assert(sizeof(DualComplex<float>) == 4 * sizeof(float));
     upload_texels(transformations_, transformations_texture_, std::as_bytes(transformations), GL_RGBA32F);
@@ -279,8 +287,8 @@ void Renderer::read_back(Image& image, int left, int top, const View& view, int 
     const std::size_t first = (std::size_t(top) * std::size_t(image.width) + std::size_t(left)) * 4;
     std::visit(
         [&](auto& samples_of) {
-            glReadPixels(0, 0, view.width, view.height, GL_RGBA_INTEGER, deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
-                         samples_of.data() + first);
+            glReadPixels(0, 0, view.width, view.height, GL_RGBA_INTEGER,
+                         deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, samples_of.data() + first);
         },
         image.rgba);
     glPixelStorei(GL_PACK_ROW_LENGTH, 0);

@@ -1,5 +1,6 @@
 // Draws the deformed picture: the one renderer of window, command line, tests and export.
-// Everything is drawn into framebuffers of its own, whose first row is the top one, so nothing is ever flipped.
+// Everything is drawn into framebuffers of its own, whose first row is the top one, so nothing is ever
+// flipped.
 #pragma once
 
 #include <array>
@@ -89,12 +90,14 @@ class Renderer {
     /// Draws the deformed picture as weighted colours, samples x samples texels a target pixel.
     void draw(const View& view, int samples);
 
-    /// Turns what draw drew into straight-alpha integers, filled with `background` or as transparent as it is, and
-    /// writes them at (left, top) of `image`, whose depth they take.
-    void read_back(Image& image, int left, int top, const View& view, int samples, std::optional<Colour> background);
+    /// Turns what draw drew into straight-alpha integers, filled with `background` or as transparent as it
+    /// is, and writes them at (left, top) of `image`, whose depth they take.
+    void read_back(Image& image, int left, int top, const View& view, int samples,
+                   std::optional<Colour> background);
 
-    /// Shows what draw drew with one sample a pixel: over a checkerboard of squares of `square` pixels inside the
-    /// image's frame, dimmed beside it; with the mesh's lines where asked. Returns the texture that holds it.
+    /// Shows what draw drew with one sample a pixel: over a checkerboard of squares of `square` pixels inside
+    /// the image's frame, dimmed beside it; with the mesh's lines where asked. Returns the texture that holds
+    /// it.
     GLuint display(const View& view, const DisplayColours& colours, double square, bool lines);
 
   private:
@@ -102,7 +105,8 @@ class Renderer {
     void bind_blend(const GlProgram& program) const;
     void draw_lines(const View& view, glm::vec4 colour);
 
-    GlProgram mesh_program_, mesh_dlb_program_, resolve_program_, display_program_, lines_program_, lines_dlb_program_;
+    GlProgram mesh_program_, mesh_dlb_program_, resolve_program_, display_program_, lines_program_,
+        lines_dlb_program_;
     GlVertexArray mesh_array_, empty_array_;
     GlBuffer rest_, now_, triangles_, edges_;
     GlBuffer weights_, transformations_;

@@ -43,11 +43,13 @@ void deform(benchmark::State& state) {
     }
     const auto vertices = double(d.mesh.rest.size());
     state.counters["vertices"] = vertices;
-    state.counters["weights/s"] = benchmark::Counter(vertices * double(state.range(1)), benchmark::Counter::kIsIterationInvariantRate);
+    state.counters["weights/s"] =
+        benchmark::Counter(vertices * double(state.range(1)), benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(deform)->Apply(sizes);
 
-/// Reads and writes as many bytes as the weights are: what no deformation that reads them all can beat by much.
+/// Reads and writes as many bytes as the weights are: what no deformation that reads them all can beat by
+/// much.
 void copy_weights(benchmark::State& state) {
     const auto side = std::size_t(state.range(0)) + 1;
     const std::vector<float> weights(side * side * std::size_t(state.range(1)), 1.0f);
@@ -62,7 +64,8 @@ BENCHMARK(copy_weights)->Apply(sizes);
 void inverse_distance(benchmark::State& state) {
     const Document document = document_with(int(state.range(0)), int(state.range(1)));
     const Mesh mesh = grid_mesh(4096, 4096, document.cells);
-    for (auto _ : state) benchmark::DoNotOptimize(weight_table(weight_schemes()[0], document.probes, mesh.rest));
+    for (auto _ : state)
+        benchmark::DoNotOptimize(weight_table(weight_schemes()[0], document.probes, mesh.rest));
 }
 BENCHMARK(inverse_distance)->Apply(sizes);
 

@@ -8,19 +8,23 @@ namespace {
 
 void run(benchmark::State& state, const std::string& command) {
     for (auto _ : state)
-        if (std::system(command.c_str()) != 0) return state.SkipWithError("the program failed; is there a display?");
+        if (std::system(command.c_str()) != 0)
+            return state.SkipWithError("the program failed; is there a display?");
 }
 
 const std::string program = PROBEWARP_PROGRAM, sample = PROBEWARP_SAMPLE;
 
-void start_to_first_frame(benchmark::State& state) { run(state, "PROBEWARP_QUIT_AFTER_FIRST_FRAME=1 '" + program + "' '" + sample + "'"); }
+void start_to_first_frame(benchmark::State& state) {
+    run(state, "PROBEWARP_QUIT_AFTER_FIRST_FRAME=1 '" + program + "' '" + sample + "'");
+}
 BENCHMARK(start_to_first_frame)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void start_to_version(benchmark::State& state) { run(state, "'" + program + "' --version >/dev/null"); }
 BENCHMARK(start_to_version)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void command_line_render(benchmark::State& state) {
-    run(state, "'" + program + "' render '" + sample + "' -o - --format bmp --probe 512,300:520,310,5 >/dev/null");
+    run(state,
+        "'" + program + "' render '" + sample + "' -o - --format bmp --probe 512,300:520,310,5 >/dev/null");
 }
 BENCHMARK(command_line_render)->Unit(benchmark::kMillisecond)->UseRealTime();
 

@@ -1,6 +1,6 @@
-// Recomputes vertices and pixels of the program's output in double precision, from the papers and the conventions
-// alone. It shares no code with core/: rigid motions are unit dual quaternions here (rotation about z), the mesh is
-// indexed on the fly, the pictures are read by libspng directly.
+// Recomputes vertices and pixels of the program's output in double precision, from the papers and the
+// conventions alone. It shares no code with core/: rigid motions are unit dual quaternions here (rotation
+// about z), the mesh is indexed on the fly, the pictures are read by libspng directly.
 #include <gtest/gtest.h>
 #include <spng.h>
 
@@ -26,7 +26,8 @@ struct Picture {
     int w = 0, h = 0;
     std::vector<Pixel> p;  // row by row; RGBA from 0 to 1
     const Pixel& at(int x, int y) const {
-        return p[std::size_t(std::clamp(y, 0, h - 1)) * std::size_t(w) + std::size_t(std::clamp(x, 0, w - 1))];
+        return p[std::size_t(std::clamp(y, 0, h - 1)) * std::size_t(w) +
+                 std::size_t(std::clamp(x, 0, w - 1))];
     }
 };
 
@@ -52,7 +53,8 @@ Picture read_png(const std::string& path) {
     if (error) throw std::runtime_error(spng_strerror(error));
     Picture picture{int(header.width), int(header.height), {}};
     for (std::size_t i = 0; i < bytes.size(); i += 4)
-        picture.p.push_back({bytes[i] / 255.0, bytes[i + 1] / 255.0, bytes[i + 2] / 255.0, bytes[i + 3] / 255.0});
+        picture.p.push_back(
+            {bytes[i] / 255.0, bytes[i + 1] / 255.0, bytes[i + 2] / 255.0, bytes[i + 3] / 255.0});
     return picture;
 }
 
@@ -69,8 +71,8 @@ void write_png(const std::string& path, int w, int h) {
     std::fclose(file);
 }
 
-/// Where the blend of the probes takes a point: unit dual quaternions (cos t/2 + k sin t/2) + e/2 d q, after Kavan,
-/// weighted by radius^2 / distance^2, about the picture's centre.
+/// Where the blend of the probes takes a point: unit dual quaternions (cos t/2 + k sin t/2) + e/2 d q, after
+/// Kavan, weighted by radius^2 / distance^2, about the picture's centre.
 Point deformed(Point v, const std::vector<Handle>& probes, double cx, double cy) {
     double w = 0, z = 0, ex = 0, ey = 0;  // real part w + z k; dual part ex i + ey j
     for (const Handle& p : probes) {
@@ -82,13 +84,15 @@ Point deformed(Point v, const std::vector<Handle>& probes, double cx, double cy)
                 if (&q < &p && q.rx == p.rx && q.ry == p.ry) first = false;
             if (first) w = z = ex = ey = 0;
             weight = 1;
-        } else if (std::any_of(probes.begin(), probes.end(), [&](const Handle& q) { return q.rx == v.x && q.ry == v.y; })) {
+        } else if (std::any_of(probes.begin(), probes.end(),
+                               [&](const Handle& q) { return q.rx == v.x && q.ry == v.y; })) {
             weight = 0;
         }
         const double t = p.degrees * std::numbers::pi / 180, c = std::cos(t / 2), s = std::sin(t / 2);
         // turn about rest, then rest to now: x -> R (x - rest) + now, in the frame about the centre
         const double rx = p.rx - cx, ry = p.ry - cy, nx = p.x - cx, ny = p.y - cy;
-        const double tx = nx - (std::cos(t) * rx - std::sin(t) * ry), ty = ny - (std::sin(t) * rx + std::cos(t) * ry);
+        const double tx = nx - (std::cos(t) * rx - std::sin(t) * ry),
+                     ty = ny - (std::sin(t) * rx + std::cos(t) * ry);
         // e/2 (tx i + ty j)(c + s k): i k = -j, j k = i
         w += weight * c;
         z += weight * s;
@@ -107,13 +111,15 @@ std::string text_of(const std::vector<Handle>& probes) {
     std::ostringstream out;
     out.precision(17);
     for (const Handle& p : probes)
-        out << " --probe " << p.rx << ',' << p.ry << ':' << p.x << ',' << p.y << ',' << p.degrees << ',' << p.radius;
+        out << " --probe " << p.rx << ',' << p.ry << ':' << p.x << ',' << p.y << ',' << p.degrees << ','
+            << p.radius;
     return out.str();
 }
 
 std::string scratch(const std::string& name) {
-    const auto folder = std::filesystem::path(PROBEWARP_SCRATCH) /
-                        (std::string("check.") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    const auto folder =
+        std::filesystem::path(PROBEWARP_SCRATCH) /
+        (std::string("check.") + testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder);
     return (folder / name).string();
 }
@@ -123,7 +129,8 @@ void run(const std::string& arguments) {
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
 }
 
-std::vector<Handle> random_probes(std::mt19937_64& random, int count, double w, double h, double wander, double turn) {
+std::vector<Handle> random_probes(std::mt19937_64& random, int count, double w, double h, double wander,
+                                  double turn) {
     std::uniform_real_distribution<double> unit(0, 1);
     std::vector<Handle> probes;
     for (int i = 0; i < count; ++i) {
@@ -135,7 +142,8 @@ std::vector<Handle> random_probes(std::mt19937_64& random, int count, double w, 
 }
 
 /// The largest distance of the OBJ's vertices from where they must be, pixels.
-double worst_vertex(const std::string& obj, int w, int h, int columns, int rows, const std::vector<Handle>& probes) {
+double worst_vertex(const std::string& obj, int w, int h, int columns, int rows,
+                    const std::vector<Handle>& probes) {
     std::ifstream in(obj);
     double worst = 0;
     std::size_t seen = 0;
@@ -143,7 +151,8 @@ double worst_vertex(const std::string& obj, int w, int h, int columns, int rows,
         double x = 0, y = 0, z = 0;
         if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) != 3) continue;
         const auto column = int(seen % std::size_t(columns + 1)), row = int(seen / std::size_t(columns + 1));
-        // The rest position as the program holds it, a float: the probe's place on a vertex must be seen alike.
+        // The rest position as the program holds it, a float: the probe's place on a vertex must be seen
+        // alike.
         const Point rest{double(float(double(w) * column / columns)), double(float(double(h) * row / rows))};
         const Point expected = deformed(rest, probes, w / 2.0, h / 2.0);
         worst = std::max(worst, std::hypot(x - expected.x, y - expected.y));
@@ -168,7 +177,8 @@ TEST(Vertices, AreWithinAHundredthOfAPixelAt8192) {
 
 TEST(Vertices, FollowProbesOnThem) {
     write_png(scratch("small.png"), 100, 50);
-    const std::vector<Handle> probes{{10, 10, 20, 15, 30, 40}, {90, 40, 90, 40, 0, 40}, {50, 25, 45, 20, 720, 20}};
+    const std::vector<Handle> probes{
+        {10, 10, 20, 15, 30, 40}, {90, 40, 90, 40, 0, 40}, {50, 25, 45, 20, 720, 20}};
     run(scratch("small.png") + " -o " + scratch("mesh.obj") + text_of(probes));
     EXPECT_LT(worst_vertex(scratch("mesh.obj"), 100, 50, 100, 50, probes), 1e-4);
 }
@@ -181,7 +191,10 @@ std::vector<Picture> mipmaps(Picture level) {
         for (int y = 0; y < half.h; ++y)
             for (int x = 0; x < half.w; ++x) {
                 Pixel sum{}, plain{};
-                for (const auto& [px, py] : {std::pair{2 * x, 2 * y}, {2 * x + 1, 2 * y}, {2 * x, 2 * y + 1}, {2 * x + 1, 2 * y + 1}}) {
+                for (const auto& [px, py] : {std::pair{2 * x, 2 * y},
+                                             {2 * x + 1, 2 * y},
+                                             {2 * x, 2 * y + 1},
+                                             {2 * x + 1, 2 * y + 1}}) {
                     const Pixel& p = level.at(px, py);
                     for (std::size_t k = 0; k < 3; ++k) sum[k] += p[k] * p[3], plain[k] += p[k] / 4;
                     sum[3] += p[3];
@@ -201,7 +214,10 @@ Pixel sampled(const Picture& picture, double x, double y) {
     const double px = x - 0.5, py = y - 0.5, fx = px - std::floor(px), fy = py - std::floor(py);
     const int ix = int(std::floor(px)), iy = int(std::floor(py));
     Pixel sum{};
-    for (const auto& [dx, dy, w] : {std::tuple{0, 0, (1 - fx) * (1 - fy)}, {1, 0, fx * (1 - fy)}, {0, 1, (1 - fx) * fy}, {1, 1, fx * fy}}) {
+    for (const auto& [dx, dy, w] : {std::tuple{0, 0, (1 - fx) * (1 - fy)},
+                                    {1, 0, fx * (1 - fy)},
+                                    {0, 1, (1 - fx) * fy},
+                                    {1, 1, fx * fy}}) {
         const Pixel& p = picture.at(ix + dx, iy + dy);
         for (std::size_t k = 0; k < 3; ++k) sum[k] += w * p[3] * p[k];
         sum[3] += w * p[3];
@@ -229,8 +245,8 @@ std::vector<Triangle> triangles(int w, int h, int columns, int rows, const std::
 }
 
 struct Rendered {
-    Pixel pixel{};           // straight
-    bool doubtful = false;   // so near an edge that rounding decides
+    Pixel pixel{};          // straight
+    bool doubtful = false;  // so near an edge that rounding decides
 };
 
 /// The pixel centre at (x, y) of the deformed picture, composited over what was drawn before.
@@ -239,8 +255,8 @@ Rendered rendered(const std::vector<Triangle>& mesh, const std::vector<Picture>&
     Pixel sum{};
     for (const Triangle& t : mesh) {
         const auto& [a, b, c] = t.now;
-        if (std::max({a.x, b.x, c.x}) < x - 1 || std::min({a.x, b.x, c.x}) > x + 1 || std::max({a.y, b.y, c.y}) < y - 1 ||
-            std::min({a.y, b.y, c.y}) > y + 1)
+        if (std::max({a.x, b.x, c.x}) < x - 1 || std::min({a.x, b.x, c.x}) > x + 1 ||
+            std::max({a.y, b.y, c.y}) < y - 1 || std::min({a.y, b.y, c.y}) > y + 1)
             continue;
         const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
         const double u = ((b.x - x) * (c.y - y) - (b.y - y) * (c.x - x)) / area;
@@ -252,9 +268,10 @@ Rendered rendered(const std::vector<Triangle>& mesh, const std::vector<Picture>&
         Point rest{0, 0};
         for (std::size_t k = 0; k < 3; ++k) rest.x += bary[k] * t.rest[k].x, rest.y += bary[k] * t.rest[k].y;
         // How the place at rest changes from pixel to pixel: the triangle's affine map, inverted.
-        const auto slope = [&](double Point::* of, bool across) {
+        const auto slope = [&](double Point::*of, bool across) {
             const double f1 = t.rest[1].*of - t.rest[0].*of, f2 = t.rest[2].*of - t.rest[0].*of;
-            return across ? (f1 * (c.y - a.y) - f2 * (b.y - a.y)) / area : (f2 * (b.x - a.x) - f1 * (c.x - a.x)) / area;
+            return across ? (f1 * (c.y - a.y) - f2 * (b.y - a.y)) / area
+                          : (f2 * (b.x - a.x) - f1 * (c.x - a.x)) / area;
         };
         const double footprint = std::max(std::hypot(slope(&Point::x, true), slope(&Point::y, true)),
                                           std::hypot(slope(&Point::x, false), slope(&Point::y, false)));
@@ -262,7 +279,8 @@ Rendered rendered(const std::vector<Triangle>& mesh, const std::vector<Picture>&
         if (std::abs(footprint - 1.02) < 0.005) result.doubtful = true;
         const auto fine = std::size_t(level);
         const double part = level - double(fine);
-        Pixel colour = sampled(levels[fine], rest.x / std::exp2(double(fine)), rest.y / std::exp2(double(fine)));
+        Pixel colour =
+            sampled(levels[fine], rest.x / std::exp2(double(fine)), rest.y / std::exp2(double(fine)));
         if (part > 0 && fine + 1 < levels.size()) {
             const double shrink = std::exp2(double(fine + 1));
             const Pixel coarse = sampled(levels[fine + 1], rest.x / shrink, rest.y / shrink);
@@ -275,9 +293,11 @@ Rendered rendered(const std::vector<Triangle>& mesh, const std::vector<Picture>&
     return result;
 }
 
-void check_pixels(const std::string& input, int cells_x, int cells_y, const std::vector<Handle>& probes, const std::string& backend) {
+void check_pixels(const std::string& input, int cells_x, int cells_y, const std::vector<Handle>& probes,
+                  const std::string& backend) {
     const std::string path = std::string(PROBEWARP_INPUTS) + "/" + input, output = scratch(input);
-    run(path + " -o " + output + " --mesh " + std::to_string(std::max(cells_x, cells_y)) + " --backend " + backend + text_of(probes));
+    run(path + " -o " + output + " --mesh " + std::to_string(std::max(cells_x, cells_y)) + " --backend " +
+        backend + text_of(probes));
     const Picture in = read_png(path), out = read_png(output);
     const auto mesh = triangles(in.w, in.h, cells_x, cells_y, probes);
     const auto levels = mipmaps(in);
@@ -287,28 +307,38 @@ void check_pixels(const std::string& input, int cells_x, int cells_y, const std:
             const Rendered expected = rendered(mesh, levels, x + 0.5, y + 0.5);
             if (expected.doubtful) continue;
             ++judged;
-            // One level for rounding, one for texels and mipmaps kept in 8 bits; a colour that is hardly there has
-            // no more digits than its alpha.
+            // One level for rounding, one for texels and mipmaps kept in 8 bits; a colour that is hardly
+            // there has no more digits than its alpha.
             const double alpha = std::max(expected.pixel[3], 1e-3), allowed = 2.0 / 255;
             bool off = std::abs(out.at(x, y)[3] - expected.pixel[3]) > allowed;
             for (std::size_t k = 0; k < 3 && expected.pixel[3] > 0.5 / 255; ++k)
                 off = off || std::abs(out.at(x, y)[k] - expected.pixel[k]) > allowed + 0.5 / 255 / alpha;
             if (off && ++wrong <= 5)
-                ADD_FAILURE() << input << " at " << x << ", " << y << ": got " << out.at(x, y)[0] * 255 << ' ' << out.at(x, y)[3] * 255
-                              << ", expected " << expected.pixel[0] * 255 << ' ' << expected.pixel[3] * 255;
+                ADD_FAILURE() << input << " at " << x << ", " << y << ": got " << out.at(x, y)[0] * 255 << ' '
+                              << out.at(x, y)[3] * 255 << ", expected " << expected.pixel[0] * 255 << ' '
+                              << expected.pixel[3] * 255;
         }
     EXPECT_EQ(wrong, 0);
     EXPECT_GT(judged, out.w * out.h / 4);  // or the check would say nothing
 }
 
 TEST(Pixels, OfAGentleDeformation) {
-    check_pixels("card.png", 12, 12, {{20, 20, 26, 17, 25, 30}, {70, 30, 66, 38, -15, 25}, {48, 80, 48, 80, 0, 40}}, "osmesa");
+    check_pixels("card.png", 12, 12,
+                 {{20, 20, 26, 17, 25, 30}, {70, 30, 66, 38, -15, 25}, {48, 80, 48, 80, 0, 40}}, "osmesa");
 }
-TEST(Pixels, OfSoftEdges) { check_pixels("soft.png", 8, 8, {{20, 32, 14, 28, -30, 20}, {46, 32, 52, 40, 35, 20}}, "osmesa"); }
-TEST(Pixels, OfAFold) { check_pixels("soft.png", 8, 8, {{16, 32, 46, 30, 10, 20}, {48, 32, 20, 34, -10, 20}}, "osmesa"); }
+TEST(Pixels, OfSoftEdges) {
+    check_pixels("soft.png", 8, 8, {{20, 32, 14, 28, -30, 20}, {46, 32, 52, 40, 35, 20}}, "osmesa");
+}
+TEST(Pixels, OfAFold) {
+    check_pixels("soft.png", 8, 8, {{16, 32, 46, 30, 10, 20}, {48, 32, 20, 34, -10, 20}}, "osmesa");
+}
 TEST(Pixels, AcrossTiles) {
-    check_pixels("wide.png", 55, 2, {{900, 20, 910, 16, 6, 100}, {1024, 20, 1018, 24, -8, 100}, {200, 20, 200, 20, 0, 100}}, "osmesa");
+    check_pixels("wide.png", 55, 2,
+                 {{900, 20, 910, 16, 6, 100}, {1024, 20, 1018, 24, -8, 100}, {200, 20, 200, 20, 0, 100}},
+                 "osmesa");
 }
-TEST(Pixels, OfEgl) { check_pixels("card.png", 12, 12, {{30, 30, 40, 28, 45, 30}, {70, 70, 70, 70, -20, 25}}, "egl"); }
+TEST(Pixels, OfEgl) {
+    check_pixels("card.png", 12, 12, {{30, 30, 40, 28, 45, 30}, {70, 70, 70, 70, -20, 25}}, "egl");
+}
 
 }  // namespace

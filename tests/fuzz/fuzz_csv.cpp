@@ -23,7 +23,8 @@ probewarp::Document small_document() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const probewarp::Document document = small_document();
     try {
-        for (const probewarp::Probe& p : probewarp::decode_probes_csv({reinterpret_cast<const char*>(data), size}, document))
+        for (const probewarp::Probe& p :
+             probewarp::decode_probes_csv({reinterpret_cast<const char*>(data), size}, document))
             if (p.id < 1 || !(p.radius > 0) || !std::isfinite(p.radius) || !std::isfinite(p.angle) ||
                 !std::isfinite(p.rest.x + p.rest.y + p.now.x + p.now.y))
                 std::abort();

@@ -1,5 +1,6 @@
-// Fuzzes the reading of pictures in all formats. The first byte says how: bit 0 names the file as a TGA (which has no
-// signature), bit 1 puts a PNG's checksums right, without which hardly any change would get past them.
+// Fuzzes the reading of pictures in all formats. The first byte says how: bit 0 names the file as a TGA
+// (which has no signature), bit 1 puts a PNG's checksums right, without which hardly any change would get
+// past them.
 #include <zlib.h>
 
 #include <cstdlib>
@@ -30,7 +31,8 @@ void repair_png(std::vector<std::byte>& bytes) {
 /// What every reader promises about a picture that it returns; looks at every byte besides.
 void check(const probewarp::Picture& picture) {
     const probewarp::Image& image = picture.image;
-    const std::size_t size = std::size_t(image.width) * std::size_t(image.height) * 4 * std::size_t(image.bits() / 8);
+    const std::size_t size =
+        std::size_t(image.width) * std::size_t(image.height) * 4 * std::size_t(image.bits() / 8);
     const auto bytes = probewarp::pixel_bytes(image);
     unsigned sum = 0;
     for (std::size_t i = 0; i < bytes.size(); ++i) sum += std::to_integer<unsigned>(bytes[i]);

@@ -1,5 +1,6 @@
-// Fuzzes the reading of projects. The first byte says how: bit 0 takes the rest for a project.json and puts it into a sound
-// ZIP archive, so that the JSON is reached; otherwise the rest is the archive, whose checksums are put right with bit 1.
+// Fuzzes the reading of projects. The first byte says how: bit 0 takes the rest for a project.json and puts
+// it into a sound ZIP archive, so that the JSON is reached; otherwise the rest is the archive, whose
+// checksums are put right with bit 1.
 #include <zlib.h>
 
 #include <cmath>
@@ -42,10 +43,13 @@ void repair_zip(Bytes& bytes) {
     };
     for (std::size_t at = 0; at + 46 <= bytes.size(); ++at) {
         if (std::memcmp(bytes.data() + at, "PK\1\2", 4) != 0) continue;
-        const std::size_t packed = little_endian(bytes, at + 20, 4), header = little_endian(bytes, at + 42, 4);
+        const std::size_t packed = little_endian(bytes, at + 20, 4),
+                          header = little_endian(bytes, at + 42, 4);
         if (header > bytes.size() || bytes.size() - header < 30) continue;
-        const std::size_t start = header + 30 + little_endian(bytes, header + 26, 2) + little_endian(bytes, header + 28, 2);
-        if (start > bytes.size() || packed > bytes.size() - start || little_endian(bytes, at + 10, 2) != 0) continue;
+        const std::size_t start =
+            header + 30 + little_endian(bytes, header + 26, 2) + little_endian(bytes, header + 28, 2);
+        if (start > bytes.size() || packed > bytes.size() - start || little_endian(bytes, at + 10, 2) != 0)
+            continue;
         const uLong crc = crc32(0, reinterpret_cast<const Bytef*>(bytes.data() + start), uInt(packed));
         put(at + 16, crc);
         put(header + 14, crc);
@@ -57,8 +61,8 @@ void check(const probewarp::Document& document) {
     if (!document.picture || document.cells < 1) std::abort();
     std::set<int> ids;
     for (const probewarp::Probe& p : document.probes)
-        if (!ids.insert(p.id).second || p.id < 1 || !(p.radius > 0) || !std::isfinite(p.radius) || !std::isfinite(p.angle) ||
-            !std::isfinite(p.rest.x + p.rest.y + p.now.x + p.now.y))
+        if (!ids.insert(p.id).second || p.id < 1 || !(p.radius > 0) || !std::isfinite(p.radius) ||
+            !std::isfinite(p.angle) || !std::isfinite(p.rest.x + p.rest.y + p.now.x + p.now.y))
             std::abort();
     const Bytes once = probewarp::encode_project(document);
     if (probewarp::encode_project(probewarp::decode_project(once, "again")) != once) std::abort();

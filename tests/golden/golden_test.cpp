@@ -23,18 +23,23 @@ struct Golden {
 
 std::ostream& operator<<(std::ostream& out, const Golden& g) { return out << g.name; }
 
-const std::vector<std::string> ten_probes{
-    "--probe", "10,10:8,12,-10",    "--probe", "48,8:50,12,15",      "--probe", "86,10:88,8,15",   "--probe", "10,48:4,44,10",
-    "--probe", "40,40:44,42,30,16", "--probe", "58,56:56,50,-30,16", "--probe", "86,48:86,52,-12", "--probe", "10,86",
-    "--probe", "48,86:46,82,20,8", "--probe", "86,86:82,88,10"};
+const std::vector<std::string> ten_probes{"--probe", "10,10:8,12,-10",    "--probe", "48,8:50,12,15",
+                                          "--probe", "86,10:88,8,15",     "--probe", "10,48:4,44,10",
+                                          "--probe", "40,40:44,42,30,16", "--probe", "58,56:56,50,-30,16",
+                                          "--probe", "86,48:86,52,-12",   "--probe", "10,86",
+                                          "--probe", "48,86:46,82,20,8",  "--probe", "86,86:82,88,10"};
 
 const std::vector<Golden> goldens{
     {"opposite", "card.png", {"--probe", "20,48", "--probe", "76,48:76,48,180"}},
     {"ten-probes", "card.png", ten_probes},
     {"alpha-edges", "soft.png", {"--probe", "20,32:16.5,28.25,-15", "--probe", "46,32:50.5,36.75,25"}},
     {"shrinking", "card.png", {"--probe", "20,20:26,24,20", "--probe", "70,70", "--scale", "0.3"}},
-    {"canvas-fit", "card.png", {"--canvas", "fit", "--probe", "48,48:60,40,30", "--probe", "80,20:120,-10,60"}},
-    {"tiles", "wide.png", {"--probe", "900,20:910,14,4", "--probe", "1024,20:1020,24,-6", "--probe", "200,20"}},
+    {"canvas-fit",
+     "card.png",
+     {"--canvas", "fit", "--probe", "48,48:60,40,30", "--probe", "80,20:120,-10,60"}},
+    {"tiles",
+     "wide.png",
+     {"--probe", "900,20:910,14,4", "--probe", "1024,20:1020,24,-6", "--probe", "200,20"}},
     {"samples", "card.png", {"--samples", "4", "--probe", "48,48:48,48,30"}},
     {"deep", "deep.png", {"--probe", "12,12:14.5,10.5,12", "--probe", "36,36"}},
     {"background", "soft.png", {"--background", "#204060", "--probe", "32,32:36,30,10"}},
@@ -48,7 +53,8 @@ TEST_P(GoldenTest, LooksAsItDid) {
     const fs::path folder = scratch_folder();
     const fs::path actual = folder / (std::string(g.name) + "-actual.png");
     const fs::path expected = golden / "expected" / (std::string(g.name) + ".png");
-    std::vector<std::string> arguments{"render", golden / "input" / g.input, "-o", actual, "--backend", backend};
+    std::vector<std::string> arguments{"render", golden / "input" / g.input, "-o", actual, "--backend",
+                                       backend};
     arguments.insert(arguments.end(), g.arguments.begin(), g.arguments.end());
     const Outcome run = run_program(arguments);
     ASSERT_EQ(run.code, 0) << run.errors;
@@ -57,15 +63,19 @@ TEST_P(GoldenTest, LooksAsItDid) {
     fs::copy_file(expected, folder / (std::string(g.name) + "-expected.png"));
     ASSERT_TRUE(a.width == e.width && a.height == e.height && a.bits() == e.bits()) << "see " << folder;
     const Difference d = difference(a, e);
-    // Another version of Mesa may round a texel's weight or a triangle's edge otherwise: few samples, or little.
+    // Another version of Mesa may round a texel's weight or a triangle's edge otherwise: few samples, or
+    // little.
     const bool close = d.mean <= 0.02 && (d.most <= 3 || d.mean <= 0.002);
     if (!close) write_png(folder / (std::string(g.name) + "-difference.png"), difference_picture(a, e));
-    EXPECT_TRUE(close) << "off by at most " << d.most << "/255, " << d.mean << "/255 on average; see " << folder;
+    EXPECT_TRUE(close) << "off by at most " << d.most << "/255, " << d.mean << "/255 on average; see "
+                       << folder;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, GoldenTest, testing::Combine(testing::ValuesIn(goldens), testing::Values("osmesa", "egl")),
+INSTANTIATE_TEST_SUITE_P(All, GoldenTest,
+                         testing::Combine(testing::ValuesIn(goldens), testing::Values("osmesa", "egl")),
                          [](const auto& p) {
-                             std::string name = std::string(std::get<0>(p.param).name) + "_" + std::get<1>(p.param);
+                             std::string name =
+                                 std::string(std::get<0>(p.param).name) + "_" + std::get<1>(p.param);
                              std::replace(name.begin(), name.end(), '-', '_');
                              return name;
                          });
@@ -75,7 +85,8 @@ class ExactTest : public testing::TestWithParam<const char*> {
   protected:
     Image render(const std::string& input, std::vector<std::string> more) {
         const fs::path output = scratch_folder() / "actual.png";
-        std::vector<std::string> arguments{"render", golden / "input" / input, "-o", output, "--backend", GetParam()};
+        std::vector<std::string> arguments{"render",  golden / "input" / input, "-o", output, "--backend",
+                                           GetParam()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome run = run_program(arguments);
         EXPECT_EQ(run.code, 0) << run.errors;
@@ -85,8 +96,9 @@ class ExactTest : public testing::TestWithParam<const char*> {
 
 TEST_P(ExactTest, UndeformedEqualsItsInputInEveryByte) {
     for (const char* input : {"card.png", "soft.png", "deep.png", "wide.png", "checks.png"})
-        for (const std::vector<std::string>& probes :
-             {std::vector<std::string>{}, {"--probe", "11.3,7.9", "--probe", "30,30"}, {"--mesh", "7", "--canvas", "fit"}}) {
+        for (const std::vector<std::string>& probes : {std::vector<std::string>{},
+                                                       {"--probe", "11.3,7.9", "--probe", "30,30"},
+                                                       {"--mesh", "7", "--canvas", "fit"}}) {
             const Image in = read(golden / "input" / input), out = render(input, probes);
             EXPECT_EQ(out.bits(), in.bits()) << input;
             EXPECT_EQ(out.rgba, in.rgba) << input << " with " << probes.size() << " arguments";
@@ -133,16 +145,19 @@ TEST_P(ExactTest, SoftEdgesHaveNoFringe) {
 }
 
 TEST_P(ExactTest, ShrinkingDoesNotAlias) {
-    // The finest checkerboard, shrunk, is grey: 127.5, give or take the mipmaps' rounding and what a level blends in.
+    // The finest checkerboard, shrunk, is grey: 127.5, give or take the mipmaps' rounding and what a level
+    // blends in.
     for (const char* scale : {"0.5", "0.25", "0.11"}) {
         const Image out = render("checks.png", {"--scale", scale});
         for (int y = 0; y < out.height; ++y)
-            for (int x = 0; x < out.width; ++x) ASSERT_NEAR(pixel(out, x, y)[0], 127.5, 2) << scale << " at " << x << ", " << y;
+            for (int x = 0; x < out.width; ++x)
+                ASSERT_NEAR(pixel(out, x, y)[0], 127.5, 2) << scale << " at " << x << ", " << y;
     }
 }
 
 TEST_P(ExactTest, AnExportMayBeLargerThanATexture) {
-    // 17600 pixels wide; drivers hold 16384. The input is smooth, so that a sixteenth of a pixel changes little.
+    // 17600 pixels wide; drivers hold 16384. The input is smooth, so that a sixteenth of a pixel changes
+    // little.
     const Image in = read(golden / "input/wide.png"), out = render("wide.png", {"--scale", "16"});
     ASSERT_EQ(out.width, 17600);
     ASSERT_EQ(out.height, 640);
@@ -152,7 +167,8 @@ TEST_P(ExactTest, AnExportMayBeLargerThanATexture) {
                 ASSERT_NEAR(pixel(out, 16 * x + 8, 16 * y + 8)[k], pixel(in, x, y)[k], 2) << x << ", " << y;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ExactTest, testing::Values("osmesa", "egl"), [](const auto& p) { return std::string(p.param); });
+INSTANTIATE_TEST_SUITE_P(All, ExactTest, testing::Values("osmesa", "egl"),
+                         [](const auto& p) { return std::string(p.param); });
 
 TEST(Refusal, OfAPictureLargerThanATexture) {
     const fs::path folder = scratch_folder();
@@ -161,9 +177,13 @@ TEST(Refusal, OfAPictureLargerThanATexture) {
     image.height = 2;
     image.rgba = std::vector<std::uint8_t>(20000 * 2 * 4, 255);
     write_png(folder / "long.png", image);
-    const Outcome run = run_program({"render", folder / "long.png", "-o", folder / "out.png", "--backend", "osmesa"});
+    const Outcome run =
+        run_program({"render", folder / "long.png", "-o", folder / "out.png", "--backend", "osmesa"});
     EXPECT_EQ(run.code, 1);
-    EXPECT_NE(run.errors.find("the picture is 20000 x 2 pixels; this graphics driver holds at most 16384 x 16384"), std::string::npos) << run.errors;
+    EXPECT_NE(
+        run.errors.find("the picture is 20000 x 2 pixels; this graphics driver holds at most 16384 x 16384"),
+        std::string::npos)
+        << run.errors;
     EXPECT_FALSE(fs::exists(folder / "out.png"));
 }
 
@@ -171,7 +191,9 @@ TEST(Refusal, OfAnExportThatIsTooLarge) {
     const fs::path output = scratch_folder() / "out.png";
     const Outcome run = run_program({"render", golden / "input/card.png", "-o", output, "--scale", "400"});
     EXPECT_EQ(run.code, 1);
-    EXPECT_NE(run.errors.find("the export would be 38400 x 38400 pixels; at most 32768 along a side"), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find("the export would be 38400 x 38400 pixels; at most 32768 along a side"),
+              std::string::npos)
+        << run.errors;
     EXPECT_FALSE(fs::exists(output));
 }
 

@@ -34,7 +34,8 @@ TEST(Context, AnUnknownBackendIsNamed) {
 
 TEST(Shaders, ACompileErrorNamesTheFileAndTheLog) {
     const auto context = open_context("osmesa");
-    const Shader broken{"shaders/broken.frag", "#version 330 core\nout vec4 c;\nvoid main() { c = nonsense; }\n"};
+    const Shader broken{"shaders/broken.frag",
+                        "#version 330 core\nout vec4 c;\nvoid main() { c = nonsense; }\n"};
     const std::string said = message([&] { make_program(shaders::screen_vert, broken); });
     EXPECT_NE(said.find("shaders/broken.frag"), std::string::npos) << said;
     EXPECT_NE(said.find("nonsense"), std::string::npos) << said;
@@ -52,7 +53,9 @@ TEST(Picture, LargerThanATextureIsRefusedBeforeItIsUploaded) {
     image.width = 32768;
     image.height = 4;
     const std::string said = message([&] { check_texture_size(image); });
-    EXPECT_NE(said.find("the picture is 32768 x 4 pixels; this graphics driver holds at most"), std::string::npos) << said;
+    EXPECT_NE(said.find("the picture is 32768 x 4 pixels; this graphics driver holds at most"),
+              std::string::npos)
+        << said;
 }
 
 TEST(Mipmaps, AreAlphaWeightedMeansDownToOnePixel) {
@@ -60,8 +63,9 @@ TEST(Mipmaps, AreAlphaWeightedMeansDownToOnePixel) {
     image.width = 4;
     image.height = 2;
     // Left: red, half there, beside green that is not there at all. Right: black and white, opaque.
-    image.rgba = std::vector<std::uint8_t>{255, 0, 0, 200, 0, 255, 0, 0, 0,   0,   0,   255, 255, 255, 255, 255,
-                                           255, 0, 0, 200, 0, 255, 0, 0, 255, 255, 255, 255, 0,   0,   0,   255};
+    image.rgba =
+        std::vector<std::uint8_t>{255, 0, 0, 200, 0, 255, 0, 0, 0,   0,   0,   255, 255, 255, 255, 255,
+                                  255, 0, 0, 200, 0, 255, 0, 0, 255, 255, 255, 255, 0,   0,   0,   255};
     const auto levels = smaller_levels(image);
     ASSERT_EQ(levels.size(), 2u);
     EXPECT_EQ(std::get<0>(levels[0].rgba), (std::vector<std::uint8_t>{255, 0, 0, 100, 128, 128, 128, 255}));
@@ -75,7 +79,8 @@ PicturePtr ramp(int side) {
     std::vector<std::uint16_t> rgba;
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x)
-            for (const int v : {65535 * x / side, 65535 * y / side, 0, 65535}) rgba.push_back(std::uint16_t(v));
+            for (const int v : {65535 * x / side, 65535 * y / side, 0, 65535})
+                rgba.push_back(std::uint16_t(v));
     picture.image.rgba = std::move(rgba);
     return std::make_shared<const Picture>(std::move(picture));
 }
@@ -117,12 +122,13 @@ TEST(VertexShader, DeformsAsTheProcessorDoes) {
         const Image processor = exported(renderer, document, deformation);
         renderer.set_blend(deformation.weights, deformation.transformations, {128, 128});
         const Image shader = exported(renderer, document, deformation);
-        // A hundredth of a pixel is 2.6 of the 256 levels that the ramp climbs a pixel; on the border, a pixel may
-        // be covered by one of the two only.
+        // A hundredth of a pixel is 2.6 of the 256 levels that the ramp climbs a pixel; on the border, a
+        // pixel may be covered by one of the two only.
         int far = 0;
         for (int y = 0; y < 256; ++y)
             for (int x = 0; x < 256; ++x)
-                for (std::size_t k = 0; k < 2; ++k) far += std::abs(pixel(processor, x, y)[k] - pixel(shader, x, y)[k]) > 3;
+                for (std::size_t k = 0; k < 2; ++k)
+                    far += std::abs(pixel(processor, x, y)[k] - pixel(shader, x, y)[k]) > 3;
         EXPECT_LE(far, probes == 0 ? 0 : 8) << probes << " probes";
     }
 }

@@ -42,10 +42,12 @@ Outcome run_program(const std::vector<std::string>& arguments) {
     close(errors[1]);
     Outcome run;
     char buffer[4096];
-    for (ssize_t n; failed == 0 && (n = ::read(errors[0], buffer, sizeof buffer)) > 0;) run.errors.append(buffer, std::size_t(n));
+    for (ssize_t n; failed == 0 && (n = ::read(errors[0], buffer, sizeof buffer)) > 0;)
+        run.errors.append(buffer, std::size_t(n));
     close(errors[0]);
     int status = 0;
-    if (failed == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status)) run.code = WEXITSTATUS(status);
+    if (failed == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status))
+        run.code = WEXITSTATUS(status);
     return run;
 }
 

@@ -237,7 +237,8 @@ TEST(MalformedProject, DeepNesting) {
 }
 
 TEST(MalformedProject, MoreThanTheLibraryCanReadInTime) {
-    // Millions of empty objects, and an object of hundreds of thousands of fields: the library is quadratic in both.
+    // Millions of empty objects, and an object of hundreds of thousands of fields: the library is quadratic
+    // in both.
     std::string objects = "[{}", fields = "{\"0\":0";
     for (int i = 1; i < 2'000'000; ++i) objects += ",{}";
     for (int i = 1; i < 500'000; ++i) fields += ",\"" + std::to_string(i) + "\":0";
@@ -248,7 +249,8 @@ TEST(MalformedProject, MoreThanTheLibraryCanReadInTime) {
 TEST(MalformedProject, AZip64Directory) {
     Bytes archive = raw_zip(good_members());
     Bytes locator(20);
-    locator[0] = std::byte{'P'}, locator[1] = std::byte{'K'}, locator[2] = std::byte{6}, locator[3] = std::byte{7};
+    locator[0] = std::byte{'P'}, locator[1] = std::byte{'K'}, locator[2] = std::byte{6},
+    locator[3] = std::byte{7};
     archive.insert(archive.end() - 22, locator.begin(), locator.end());
     EXPECT_THAT(refusal(archive), HasSubstr("too many members"));
 }
