@@ -4,6 +4,7 @@
     window_test.py --program PATH --images DIR --scratch DIR
 """
 import argparse
+import faulthandler
 import json
 import math
 import os
@@ -44,7 +45,8 @@ class Desk:
         self.program.stderr.close()
 
     def ask(self, *words):
-        return subprocess.run(["xdotool", *map(str, words)], env=self.environment, capture_output=True, text=True).stdout
+        return subprocess.run(["xdotool", *map(str, words)], env=self.environment, capture_output=True, text=True,
+                              timeout=PATIENCE).stdout
 
     def wait(self, condition, what="the window"):
         end = time.monotonic() + PATIENCE
@@ -273,4 +275,5 @@ if __name__ == "__main__":
     for name in ("program", "images", "scratch"):
         parser.add_argument(f"--{name}", required=True)
     options, rest = parser.parse_known_args()
+    faulthandler.dump_traceback_later(280, exit=True)  # says where it hangs, should it hang
     unittest.main(argv=[sys.argv[0], *rest], verbosity=2)
