@@ -16,6 +16,7 @@
 #include "model/mesh.h"
 #include "model/probe.h"
 #include "render/gl_objects.h"
+#include "render/picture_texture.h"
 
 namespace probewarp {
 
@@ -27,46 +28,8 @@ struct View {
     int height = 0;
 };
 
-/// The picture's mipmaps from half its size down to one pixel: each pixel the alpha-weighted mean of four.
-std::vector<Image> smaller_levels(const Image& image);
-
-/// A texture of `image` for the window's toolkit to draw, smoothly scaled.
-GlTexture preview_texture(const Image& image);
-
 /// Fills the window itself with one colour, before its toolkit draws into it.
 void clear_window(int width, int height, glm::vec3 colour);
-
-/// A picture as the graphics driver holds it.
-struct PictureTexture {
-    GlTexture texture;
-    int width = 0, height = 0;
-    int last_level = 0;  ///< the smallest mipmap
-};
-
-/// Throws Error where the driver has no texture as large as the image.
-void check_texture_size(const Image& image);
-
-/// Hands a picture to the driver some rows at a time, so that a large one does not stop the window.
-class PictureUpload {
-  public:
-    /// image, levels (as smaller_levels gives them): must outlive it. Throws Error as check_texture_size.
-    PictureUpload(const Image& image, std::span<const Image> levels);
-
-    bool done() const { return level_ > texture_.last_level; }
-    /// Uploads about a million pixels.
-    void step();
-    /// Requires done().
-    PictureTexture take();
-
-  private:
-    const Image& image_;
-    std::span<const Image> levels_;
-    PictureTexture texture_;
-    int level_ = 0, row_ = 0;
-};
-
-/// All of it at once.
-PictureTexture upload_picture(const Image& image);
 
 struct DisplayColours {
     glm::vec3 canvas, light, dark;  ///< beside the picture, and the two of the checkerboard; 0 to 1
