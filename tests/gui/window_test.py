@@ -236,6 +236,15 @@ class WindowTest(unittest.TestCase):
         desk.wait_title("good.probewarp – Probewarp")
         self.assertEqual(self.save(desk, "after.probewarp").read_bytes(), project.read_bytes())
 
+    def test_a_dropped_file_opens(self):
+        desk = self.desk()
+        desk.wait_title("Probewarp")
+        desk.settle()
+        drop = pathlib.Path(__file__).with_name("drop_file.py")
+        subprocess.run([sys.executable, str(drop), desk.window, f"{options.images}/lighthouse.png", "500", "400"],
+                       env=desk.environment, check=True, timeout=PATIENCE)
+        desk.wait_title("lighthouse.png – Probewarp")
+
     def test_unsaved_work_is_asked_about(self):
         desk = self.open_sample()
         desk.double_click(*desk.at(512, 694))
