@@ -32,8 +32,8 @@ fs::path usual_folder(const App& app) {
 }
 
 void open_now(App& app, const fs::path& path) {
-    start_job(app, fmt::format("Opening {}", path.filename().string()), true,
-              [path]() -> std::function<void(App&)> {
+    start_job(app, fmt::format("Opening {}", path.filename().string()), JobKind::reading,
+              [path](const auto&) -> std::function<void(App&)> {
                   auto document = std::make_shared<Document>(read_document(path));
                   std::error_code ignored;
                   const fs::path whole = fs::absolute(path, ignored);
@@ -52,16 +52,21 @@ void open_now(App& app, const fs::path& path) {
 void save_to(App& app, fs::path path, std::function<void(App&)> then) {
     const Document document = app.editor.document;
     const std::size_t step = app.editor.history.at;
-    start_job(app, fmt::format("Saving {}", path.filename().string()), true,
-              [document, path, step, then = std::move(then)]() -> std::function<void(App&)> {
-                  write_file(path, encode_project(document));
-                  return [path, step, then](App& a) {
-                      a.editor.path = path;
-                      a.editor.history.saved = step;
-                      say(a, Tone::done, fmt::format("Saved {}.", path.filename().string()));
-                      if (then) then(a);
-                  };
-              });
+    start_job(
+        app, fmt::format("Saving {}", path.filename().string()), JobKind::writing,
+        [document, path, step, then = std::move(then)](const auto& given_up) -> std::function<void(App&)> {
+            const auto bytes = encode_project(document);
+            if (given_up) return {};
+            write_file(path, bytes);
+            return [path, document, step, then, &given_up](App& a) {
+                a.editor.path = path;
+                // Given up too late, the person may have gone on since.
+                const auto& steps = a.editor.history.steps;
+                if (step < steps.size() && steps[step].document == document) a.editor.history.saved = step;
+                say(a, Tone::done, fmt::format("Saved {}.", path.filename().string()));
+                if (then && !given_up) then(a);
+            };
+        });
 }
 
 void save_as(App& app, std::function<void(App&)> then = {}) {
@@ -92,8 +97,8 @@ void new_document(App& app) { start(app.editor, {}, {}, true); }
 void replace_picture_dialog(App& app) {
     ask_for_file(app, "Put another picture under the probes", "Replace", false, picture_endings(),
                  usual_folder(app), [](App& app_now, const fs::path& path) {
-                     start_job(app_now, fmt::format("Opening {}", path.filename().string()), true,
-                               [path]() -> std::function<void(App&)> {
+                     start_job(app_now, fmt::format("Opening {}", path.filename().string()), JobKind::reading,
+                               [path](const auto&) -> std::function<void(App&)> {
                                    auto picture = std::make_shared<const Picture>(read_picture(path));
                                    return [picture](App& a) {
                                        Document document = a.editor.document;
@@ -170,8 +175,8 @@ void export_to(App& app, const fs::path& path) {
     const ImageFormat* format = image_format_of(path);
     if (path.extension() == ".obj") {
         const std::string text = encode_obj(app.editor.document, app.editor.deformation);
-        start_job(app, fmt::format("Exporting {}", path.filename().string()), true,
-                  [path, text]() -> std::function<void(App&)> {
+        start_job(app, fmt::format("Exporting {}", path.filename().string()), JobKind::writing,
+                  [path, text](const auto&) -> std::function<void(App&)> {
                       write_file(path, std::as_bytes(std::span(text)));
                       return
                           [path](App& a) { say(a, Tone::done, fmt::format("Exported {}.", path.string())); };
@@ -190,10 +195,12 @@ void export_to(App& app, const fs::path& path) {
     }
     app.jobs.export_title = fmt::format("Exporting {}", path.filename().string());
     app.jobs.exported = [path, format, encode](App& a, Image image) {
-        start_job(a, fmt::format("Writing {}", path.filename().string()), true,
-                  [path, format, encode,
-                   image = std::make_shared<Image>(std::move(image))]() -> std::function<void(App&)> {
-                      write_file(path, format->encode(*image, encode));
+        start_job(a, fmt::format("Writing {}", path.filename().string()), JobKind::writing,
+                  [path, format, encode, image = std::make_shared<Image>(std::move(image))](
+                      const auto& given_up) -> std::function<void(App&)> {
+                      const auto bytes = format->encode(*image, encode);
+                      if (given_up) return {};
+                      write_file(path, bytes);
                       return [path](App& later) {
                           say(later, Tone::done, fmt::format("Exported {}.", path.string()));
                       };

@@ -9,13 +9,13 @@
 
 namespace probewarp {
 
-void start_job(App& app, std::string title, bool blocks, std::function<std::function<void(App&)>()> work) {
+void start_job(App& app, std::string title, JobKind kind, Work work) {
     auto job = std::make_unique<Job>();
     job->title = std::move(title);
-    job->blocks = blocks;
+    job->kind = kind;
     job->thread = std::jthread([&job = *job, work = std::move(work)] {
         try {
-            job.finish = work();
+            job.finish = work(job.given_up);
         } catch (const std::bad_alloc&) {
             job.error = "There is not enough memory.";
         } catch (const std::exception& error) {
@@ -76,7 +76,10 @@ void advance_jobs(App& app) {
         const std::unique_ptr<Job> job = std::move(app.jobs.running[i]);
         app.jobs.running.erase(app.jobs.running.begin() + std::ptrdiff_t(i));
         app.wake();
-        if (job->given_up) continue;
+        if (job->given_up && (job->kind != JobKind::writing || !job->finish)) {
+            say(app, Tone::hint, "Cancelled.");
+            continue;
+        }
         if (!job->error.empty())
             say(app, Tone::error, job->error);
         else if (job->finish)
@@ -87,7 +90,7 @@ void advance_jobs(App& app) {
 void prepare_picture(App& app, PicturePtr picture) {
     if (app.jobs.preparing == picture) return;
     app.jobs.preparing = picture;
-    start_job(app, "", false, [picture]() -> std::function<void(App&)> {
+    start_job(app, "", JobKind::background, [picture](const auto&) -> std::function<void(App&)> {
         auto levels = std::make_shared<std::vector<Image>>(smaller_levels(picture->image));
         return [picture, levels](App& a) {
             if (picture != a.editor.document.picture) {  // another was opened meanwhile
@@ -103,15 +106,21 @@ void prepare_picture(App& app, PicturePtr picture) {
     });
 }
 
+namespace {
+
+bool waits_for(const Job& job) { return job.kind != JobKind::background && !job.given_up; }
+
+}  // namespace
+
 bool is_busy(const App& app) {
     return app.jobs.exporting || std::any_of(app.jobs.running.begin(), app.jobs.running.end(),
-                                             [](const auto& job) { return job->blocks && !job->given_up; });
+                                             [](const auto& job) { return waits_for(*job); });
 }
 
 void draw_progress(App& app) {
     if (!is_busy(app)) return;
     const auto job = std::find_if(app.jobs.running.begin(), app.jobs.running.end(),
-                                  [](const auto& j) { return j->blocks && !j->given_up; });
+                                  [](const auto& j) { return waits_for(*j); });
     const bool exports = app.jobs.exporting != nullptr;
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
@@ -124,11 +133,12 @@ void draw_progress(App& app) {
     const float to_and_fro = float(0.5 + 0.5 * std::sin(ImGui::GetTime() * 3));
     ImGui::ProgressBar(exports ? float(app.jobs.exporting->progress()) : to_and_fro, {-1, app.px(6)}, "");
     if (ImGui::Button("Cancel", {app.px(96), app.px(28)})) {
-        if (exports)
+        if (exports) {
             app.jobs.exporting.reset();
-        else
-            (*job)->given_up = true;
-        say(app, Tone::hint, "Cancelled.");
+            say(app, Tone::hint, "Cancelled.");
+        } else {
+            (*job)->given_up = true;  // said when the thread has ended
+        }
     }
     ImGui::End();
     app.wake();

@@ -16,11 +16,16 @@ namespace probewarp {
 
 struct App;
 
-/// One piece of work on a thread of its own. `finish` runs on the window's thread, unless the work was given
-/// up.
+enum class JobKind {
+    background,  ///< nobody waits for it
+    reading,     ///< the window waits behind a dialog; given up, its result is dropped
+    writing,     ///< likewise; given up too late, the file is there, and what follows from that happens
+};
+
+/// One piece of work on a thread of its own. `finish` runs on the window's thread.
 struct Job {
-    std::string title;               ///< "Opening gingerbread.png"
-    bool blocks = true;              ///< the window waits for it behind a dialog
+    std::string title;  ///< "Opening gingerbread.png"
+    JobKind kind = JobKind::background;
     std::atomic<bool> done = false;  ///< the thread has ended
     std::atomic<bool> given_up = false;
     std::string error;                 ///< written by the thread before done
@@ -46,9 +51,12 @@ struct Jobs {
     std::string export_title;
 };
 
-/// Runs `work` on a thread; what it returns is called on the window's thread afterwards. An Error it throws
-/// is said.
-void start_job(App& app, std::string title, bool blocks, std::function<std::function<void(App&)>()> work);
+/// What a thread does. It returns what the window's thread does afterwards, or nothing. Work that writes
+/// looks at `given_up` before it touches the file.
+using Work = std::function<std::function<void(App&)>(const std::atomic<bool>& given_up)>;
+
+/// Runs `work` on a thread. An Error it throws is said.
+void start_job(App& app, std::string title, JobKind kind, Work work);
 
 /// Begins to hand a picture to the renderer; App::uploaded is it when that is done.
 void prepare_picture(App& app, PicturePtr picture);

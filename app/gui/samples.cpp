@@ -40,17 +40,18 @@ void load_thumbnails(App& app) {
     std::sort(app.samples.list.begin(), app.samples.list.end(),
               [](const auto& a, const auto& b) { return a.path < b.path; });
     for (const Sample& sample : app.samples.list)
-        start_job(app, "", false, [path = sample.path]() -> std::function<void(App&)> {
-            auto small = std::make_shared<Image>(thumbnail(read_document(path).picture->image));
-            return [small, path](App& a) {
-                for (Sample& s : a.samples.list)
-                    if (s.path == path) {
-                        s.texture = preview_texture(*small);
-                        s.width = small->width;
-                        s.height = small->height;
-                    }
-            };
-        });
+        start_job(app, "", JobKind::background,
+                  [path = sample.path](const auto&) -> std::function<void(App&)> {
+                      auto small = std::make_shared<Image>(thumbnail(read_document(path).picture->image));
+                      return [small, path](App& a) {
+                          for (Sample& s : a.samples.list)
+                              if (s.path == path) {
+                                  s.texture = preview_texture(*small);
+                                  s.width = small->width;
+                                  s.height = small->height;
+                              }
+                      };
+                  });
 }
 
 void draw_sample(App& app, const Sample& sample, ImVec2 from, ImVec2 size) {

