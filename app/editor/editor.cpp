@@ -21,7 +21,12 @@ void start(Editor& editor, Document document, std::filesystem::path path, bool s
     editor.hover = {};
     editor.history = new_history(document, saved);
     editor.document = std::move(document);
-    editor.deformation = {};
+    // The versions go on: who keeps what was drawn from the last document must see that this is another.
+    Deformation fresh;
+    fresh.mesh_version = editor.deformation.mesh_version;
+    fresh.version = editor.deformation.version;
+    editor.deformation = std::move(fresh);
+    ++editor.opened;
     editor.path = std::move(path);
     editor.fit_wanted = true;
 }

@@ -68,6 +68,7 @@ struct Editor {
     Document document;  ///< what is shown: the present step, or what a gesture makes of it
     Deformation deformation;
     std::filesystem::path path;  ///< of the project; empty before it was saved
+    unsigned long opened = 0;    ///< counts the documents begun with
 
     CanvasView view;
     glm::dvec2 canvas_size{0};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "gui/app.h"
 #include "io/file.h"
@@ -36,7 +37,7 @@ void open_now(App& app, const fs::path& path) {
               [path](const auto&) -> std::function<void(App&)> {
                   auto document = std::make_shared<Document>(read_document(path));
                   std::error_code ignored;
-                  const fs::path whole = fs::absolute(path, ignored);
+                  const fs::path whole = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
                   return [document, whole](App& a) {
                       try {
                           check_texture_size(document->picture->image);
@@ -44,29 +45,39 @@ void open_now(App& app, const fs::path& path) {
                           return say(a, Tone::error, fmt::format("{}: {}", whole.string(), error.what()));
                       }
                       const bool project = whole.extension() == project_extension;
-                      start(a.editor, std::move(*document), project ? whole : fs::path(), true);
+                      // A sample is saved under another name, never over the one that came with the program.
+                      const bool sample = whole.parent_path() == samples_folder();
+                      start(a.editor, std::move(*document), project && !sample ? whole : fs::path(), true);
+                      a.export_dialog.path.clear();
                   };
               });
 }
 
 void save_to(App& app, fs::path path, std::function<void(App&)> then) {
+    for (const auto& job : app.jobs.running)
+        if (job->kind == JobKind::writing)
+            return say(app, Tone::hint, "The last file is still being written.");
+    const unsigned long opened = app.editor.opened;
     const Document document = app.editor.document;
     const std::size_t step = app.editor.history.at;
-    start_job(
-        app, fmt::format("Saving {}", path.filename().string()), JobKind::writing,
-        [document, path, step, then = std::move(then)](const auto& given_up) -> std::function<void(App&)> {
-            const auto bytes = encode_project(document);
-            if (given_up) return {};
-            write_file(path, bytes);
-            return [path, document, step, then, &given_up](App& a) {
-                a.editor.path = path;
-                // Given up too late, the person may have gone on since.
-                const auto& steps = a.editor.history.steps;
-                if (step < steps.size() && steps[step].document == document) a.editor.history.saved = step;
-                say(a, Tone::done, fmt::format("Saved {}.", path.filename().string()));
-                if (then && !given_up) then(a);
-            };
-        });
+    start_job(app, fmt::format("Saving {}", path.filename().string()), JobKind::writing,
+              [document, path, step, opened,
+               then = std::move(then)](const auto& given_up) -> std::function<void(App&)> {
+                  const auto bytes = encode_project(document);
+                  if (given_up) return {};
+                  write_file(path, bytes);
+                  return [path, document, step, then, opened, &given_up](App& a) {
+                      // Given up too late, the person may have gone on, or have opened another document.
+                      const auto& steps = a.editor.history.steps;
+                      if (a.editor.opened == opened) {
+                          a.editor.path = path;
+                          if (step < steps.size() && steps[step].document == document)
+                              a.editor.history.saved = step;
+                      }
+                      say(a, Tone::done, fmt::format("Saved {}.", path.filename().string()));
+                      if (then && !given_up) then(a);
+                  };
+              });
 }
 
 void save_as(App& app, std::function<void(App&)> then = {}) {
@@ -92,7 +103,10 @@ void open_dialog(App& app) {
                  [](App& a, const fs::path& path) { open_now(a, path); });
 }
 
-void new_document(App& app) { start(app.editor, {}, {}, true); }
+void new_document(App& app) {
+    start(app.editor, {}, {}, true);
+    app.export_dialog.path.clear();
+}
 
 void replace_picture_dialog(App& app) {
     ask_for_file(app, "Put another picture under the probes", "Replace", false, picture_endings(),
@@ -118,22 +132,24 @@ void replace_picture_dialog(App& app) {
 }
 
 void import_probes_dialog(App& app) {
-    ask_for_file(app, "Import the probes of a CSV file", "Import", false, {".csv", ".txt"}, usual_folder(app),
-                 [](App& a, const fs::path& path) {
-                     try {
-                         const auto bytes = read_file(path);
-                         Document document = a.editor.document;
-                         const auto probes = decode_probes_csv(
-                             {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, document);
-                         document.probes.insert(document.probes.end(), probes.begin(), probes.end());
-                         check_size(document);
-                         a.editor.document = std::move(document);
-                         commit(a.editor, "Import probes");
-                         say(a, Tone::done, fmt::format("Imported {} probes.", probes.size()));
-                     } catch (const Error& error) {
-                         say(a, Tone::error, fmt::format("{}: {}", path.string(), error.what()));
-                     }
-                 });
+    ask_for_file(
+        app, "Import the probes of a CSV file", "Import", false, {".csv", ".txt"}, usual_folder(app),
+        [](App& a, const fs::path& path) {
+            try {
+                const auto bytes = read_file(path);
+                Document document = a.editor.document;
+                const auto probes =
+                    decode_probes_csv({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, document);
+                document.probes.insert(document.probes.end(), probes.begin(), probes.end());
+                check_size(document);
+                a.editor.document = std::move(document);
+                commit(a.editor, "Import probes");
+                say(a, Tone::done, fmt::format("Imported {} probes.", probes.size()));
+            } catch (const Error& error) {
+                const std::string said = error.what(), name = path.string();
+                say(a, Tone::error, said.starts_with(name) ? said : fmt::format("{}: {}", name, said));
+            }
+        });
 }
 
 void export_dialog(App& app) {
@@ -158,7 +174,16 @@ std::string document_name(const App& app) {
     return has_picture(app.editor) ? app.editor.document.picture->name : "";
 }
 
+void end_gesture(App& app) {
+    if (!app.editor.gesture) return;
+    if (app.editor.gesture->kind == Gesture::Kind::field)
+        end_field(app.editor, app.field_label);
+    else
+        cancel(app.editor);
+}
+
 void after_saving(App& app, const char* what, std::function<void(App&)> then) {
+    end_gesture(app);
     if (!has_picture(app.editor) || is_saved(app.editor.history)) return then(app);
     app.questions.push_back(
         {"Unsaved changes",
@@ -171,9 +196,18 @@ void open_path(App& app, const fs::path& path) {
     after_saving(app, "opening another", [path](App& a) { open_now(a, path); });
 }
 
+bool is_obj(const fs::path& path) { return path.extension() == ".obj" || path.extension() == ".OBJ"; }
+
+fs::path export_path(const App& app) {
+    const std::string& typed = app.export_dialog.path;
+    const char* home = std::getenv("HOME");
+    if (home && typed.starts_with("~/")) return fs::path(home) / typed.substr(2);
+    return usual_folder(app) / typed;
+}
+
 void export_to(App& app, const fs::path& path) {
     const ImageFormat* format = image_format_of(path);
-    if (path.extension() == ".obj") {
+    if (is_obj(path)) {
         const std::string text = encode_obj(app.editor.document, app.editor.deformation);
         start_job(app, fmt::format("Exporting {}", path.filename().string()), JobKind::writing,
                   [path, text](const auto&) -> std::function<void(App&)> {
@@ -190,7 +224,7 @@ void export_to(App& app, const fs::path& path) {
     try {
         app.jobs.exporting =
             std::make_unique<ExportJob>(*app.renderer, app.editor.document, app.editor.deformation, settings);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         return say(app, Tone::error, error.what());
     }
     app.jobs.export_title = fmt::format("Exporting {}", path.filename().string());
@@ -210,6 +244,7 @@ void export_to(App& app, const fs::path& path) {
 }
 
 void handle_requests(App& app) {
+    if (!app.questions.empty()) app.editor.requests.clear();  // one question at a time
     for (const Request request : std::exchange(app.editor.requests, {})) switch (request) {
             case Request::new_document:
                 after_saving(app, "closing it", &new_document);

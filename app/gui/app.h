@@ -74,7 +74,9 @@ struct App {
     Samples samples;
     bool modal = false;  ///< a dialog is open: the canvas and the shortcuts rest
     bool probes_open = true, probe_open = true, deformation_open = true;
-    int renaming = 0;  ///< probe id
+    double busy_since = -1;  ///< seconds of ImGui's clock; negative while nothing blocks
+    ImGuiID field = 0;       ///< the item of the panel field being edited
+    int renaming = 0;        ///< probe id
     std::string new_name;
     std::string field_label;  ///< of the panel field being edited
     bool quit = false;

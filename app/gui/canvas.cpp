@@ -14,8 +14,8 @@ namespace probewarp {
 
 namespace {
 
-/// Brings the renderer up to date with the document.
-void update_renderer(App& app) {
+/// Brings the deformation up to date with the document, and keeps the time it took.
+void update_deformation(App& app) {
     Editor& editor = app.editor;
     using Clock = std::chrono::steady_clock;
     const auto before = Clock::now();
@@ -23,17 +23,14 @@ void update_renderer(App& app) {
     refresh(editor);
     if (editor.deformation.version != version)
         app.deform_milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - before).count();
-    if (app.shown.mesh_version != editor.deformation.mesh_version)
-        app.renderer->set_mesh(editor.deformation.mesh);
-    if (app.shown.version != editor.deformation.version) app.renderer->set_positions(editor.deformation.now);
 }
 
 bool same(const CanvasView& a, const CanvasView& b) { return a.corner == b.corner && a.zoom == b.zoom; }
 
 void update_texture(App& app, glm::ivec2 size) {
+    update_deformation(app);
     if (app.jobs.exporting) return;  // the renderer is busy; the canvas keeps its last picture
     if (app.uploaded != app.editor.document.picture) return prepare_picture(app, app.editor.document.picture);
-    update_renderer(app);
     const Editor& editor = app.editor;
     Shown& shown = app.shown;
     if (shown.picture == app.uploaded && shown.version == editor.deformation.version &&
@@ -45,16 +42,27 @@ void update_texture(App& app, glm::ivec2 size) {
     view.origin = -editor.view.corner / editor.view.zoom;
     view.width = size.x;
     view.height = size.y;
-    app.renderer->draw(view, 1);
-    shown.texture =
-        app.renderer->display(view, display_colours(app.theme), double(app.px(12)), editor.show_mesh);
-    shown.picture = app.uploaded;
-    shown.mesh_version = editor.deformation.mesh_version;
-    shown.version = editor.deformation.version;
-    shown.view = editor.view;
-    shown.size = size;
-    shown.mesh = editor.show_mesh;
-    shown.light = app.theme.is_light;
+    const bool new_mesh = shown.mesh_version != editor.deformation.mesh_version;
+    const bool new_positions = new_mesh || shown.version != editor.deformation.version;
+    // Kept before the drawing: where it fails, it is tried again only when something has changed.
+    const GLuint texture = shown.texture;
+    shown = {app.uploaded,
+             editor.deformation.mesh_version,
+             editor.deformation.version,
+             editor.view,
+             size,
+             editor.show_mesh,
+             app.theme.is_light,
+             texture};
+    try {
+        if (new_mesh) app.renderer->set_mesh(editor.deformation.mesh);
+        if (new_positions) app.renderer->set_positions(editor.deformation.now);
+        app.renderer->draw(view, 1);
+        shown.texture =
+            app.renderer->display(view, display_colours(app.theme), double(app.px(12)), editor.show_mesh);
+    } catch (const std::exception& error) {
+        say(app, Tone::error, error.what());
+    }
 }
 
 /// Draws probes at a place of the window, in the look of look.md.

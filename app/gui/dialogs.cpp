@@ -39,9 +39,11 @@ void align_buttons(const App& app, int count, float width) {
 /// What keeps the export from beginning, or nothing.
 std::string export_trouble(const App& app) {
     const ExportDialog& dialog = app.export_dialog;
-    const std::filesystem::path path = dialog.path;
+    const std::filesystem::path path = export_path(app);
     const ImageFormat* format = image_format_of(path);
-    if (path.extension() != ".obj" && (!format || !format->encode))
+    if (!is_obj(path) && app.uploaded != app.editor.document.picture)
+        return "The picture is still being prepared.";
+    if (!is_obj(path) && (!format || !format->encode))
         return "The name must end with .png, .jpg, .bmp, .tga or .obj.";
     std::error_code ignored;
     if (!std::filesystem::is_directory(path.parent_path(), ignored)) return "There is no such folder.";
@@ -56,13 +58,13 @@ std::string export_trouble(const App& app) {
 void begin_export(App& app) {
     ExportDialog& dialog = app.export_dialog;
     std::error_code ignored;
-    if (std::filesystem::exists(dialog.path, ignored) && !dialog.overwrite_asked) {
+    if (std::filesystem::exists(export_path(app), ignored) && !dialog.overwrite_asked) {
         dialog.overwrite_asked = true;
         return;
     }
     dialog.open = false;
     ImGui::CloseCurrentPopup();
-    export_to(app, dialog.path);
+    export_to(app, export_path(app));
 }
 
 void draw_export_settings(App& app) {
@@ -117,7 +119,7 @@ void draw_export_settings(App& app) {
 }  // namespace
 
 void draw_questions(App& app) {
-    if (app.questions.empty()) return;
+    if (app.questions.empty() || app.file_dialog.open || is_busy(app)) return;
     const Question question = app.questions.front();
     if (!begin_dialog(app, question.title.c_str(), 440)) return;
     ImGui::PushTextWrapPos(0);
@@ -164,7 +166,7 @@ void draw_export_dialog(App& app) {
                          a.export_dialog.overwrite_asked = std::filesystem::exists(path, ignored);
                      });
     }
-    if (std::filesystem::path(dialog.path).extension() != ".obj") draw_export_settings(app);
+    if (!is_obj(export_path(app))) draw_export_settings(app);
 
     const std::string trouble = export_trouble(app);
     ImGui::Dummy({0, app.px(2)});
@@ -183,7 +185,8 @@ void draw_export_dialog(App& app) {
     ImGui::PopStyleColor();
     ImGui::Dummy({0, app.px(2)});
     align_buttons(app, 2, 108);
-    const bool cancelled = ImGui::Button("Cancel", {app.px(108), app.px(28)}) || escape_pressed();
+    const bool cancelled =
+        ImGui::Button("Cancel", {app.px(108), app.px(28)}) || (!appearing && escape_pressed());
     ImGui::SameLine();
     if ((accent_button(app, "Export", {app.px(108), app.px(28)}, nullptr, trouble.empty()) || entered) &&
         trouble.empty())

@@ -45,7 +45,9 @@ void list_folder(FileDialog& dialog) {
             std::find(dialog.endings.begin(), dialog.endings.end(), ending) == dialog.endings.end())
             continue;
         dialog.entries.push_back(
-            {at->path(), label, is_folder ? "" : size_text(at->file_size(ignored)), is_folder});
+            {at->path(), label,
+             is_folder ? "" : size_text(at->is_regular_file(ignored) ? at->file_size(ignored) : 0),
+             is_folder});
     }
     if (error)
         dialog.trouble = fmt::format("{} cannot be listed: {}.", dialog.folder.string(), error.message());
@@ -66,7 +68,10 @@ fs::path meant(const FileDialog& dialog) {
     const char* home = std::getenv("HOME");
     if (home && name.starts_with("~/")) name = home + name.substr(1);
     fs::path path = dialog.folder / name;
-    if (dialog.saving && !path.has_extension()) path += dialog.endings.front();
+    const std::string ending = lower(path.extension().string());
+    const bool known =
+        std::find(dialog.endings.begin(), dialog.endings.end(), ending) != dialog.endings.end();
+    if (dialog.saving && !known) path += dialog.endings.front();
     return path.lexically_normal();
 }
 

@@ -39,7 +39,7 @@ bool advance(App& app, Steps& steps) {
     try {
         while (!steps.done() && Clock::now() < until) steps.step();
         return true;
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         say(app, Tone::error, error.what());
         return false;
     }
@@ -66,7 +66,7 @@ void advance_export(App& app) {
 }  // namespace
 
 void advance_jobs(App& app) {
-    if (app.jobs.uploading) advance_upload(app);
+    if (app.jobs.uploading && !app.jobs.exporting) advance_upload(app);
     if (app.jobs.exporting) advance_export(app);
     for (std::size_t i = 0; i < app.jobs.running.size();) {
         if (!app.jobs.running[i]->done) {
@@ -99,7 +99,7 @@ void prepare_picture(App& app, PicturePtr picture) {
             }
             try {
                 a.jobs.uploading = std::make_unique<Upload>(picture, std::move(*levels));
-            } catch (const Error& error) {
+            } catch (const std::exception& error) {
                 say(a, Tone::error, error.what());
             }
         };
@@ -118,7 +118,13 @@ bool is_busy(const App& app) {
 }
 
 void draw_progress(App& app) {
-    if (!is_busy(app)) return;
+    if (!is_busy(app)) {
+        app.busy_since = -1;
+        return;
+    }
+    app.wake();
+    if (app.busy_since < 0) app.busy_since = ImGui::GetTime();
+    if (ImGui::GetTime() - app.busy_since < 0.15) return;  // what is over at once needs no dialog
     const auto job = std::find_if(app.jobs.running.begin(), app.jobs.running.end(),
                                   [](const auto& j) { return waits_for(*j); });
     const bool exports = app.jobs.exporting != nullptr;

@@ -1,6 +1,7 @@
 // The panel at the right: the list of probes, the chosen probe's numbers, the deformation.
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -20,8 +21,10 @@ constexpr double farthest = 1e6;  // of a typed coordinate, image pixels
 
 /// Call after a field of the panel: what it does until it is left is one step of the history.
 void is_step(App& app, const std::string& label) {
-    if (!ImGui::IsItemActive() || app.editor.gesture) return;
+    if (!ImGui::IsItemActive() || (app.editor.gesture && app.field == ImGui::GetItemID())) return;
+    if (app.editor.gesture) end_field(app.editor, app.field_label);  // from one field straight into another
     begin_field(app.editor);
+    app.field = ImGui::GetItemID();
     app.field_label = label;
 }
 
@@ -201,7 +204,7 @@ void mesh_slider(App& app) {
     ImGui::SameLine(0, app.px(8));
     int typed = cells;
     ImGui::SetNextItemWidth(app.px(40));
-    if (ImGui::InputInt("##cells", &typed, 0, 0)) set_cells(app, std::clamp(typed, min_cells, int(most)));
+    if (ImGui::InputInt("##cells", &typed, 0, 0)) set_cells(app, std::clamp(typed, min_cells, max_cells));
     is_step(app, "Mesh density");
 }
 
@@ -235,7 +238,8 @@ void draw_panel(App& app) {
     draw_chosen_probe(app);
     draw_deformation(app);
     // Leaving a field makes what it did a step, however it was left.
-    if (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field && !ImGui::IsAnyItemActive())
+    if (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field &&
+        ImGui::GetActiveID() != app.field)
         end_field(app.editor, app.field_label);
     ImGui::GetWindowDrawList()->AddLine({display.x - width, top}, {display.x - width, top + height},
                                         app.theme.line);

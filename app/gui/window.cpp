@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -88,7 +89,8 @@ void on_button(GLFWwindow* window, int which, int action, int mods) {
                                                               : Button::right;
     const PointerEvent event = pointer_event(app, button);
     if (action == GLFW_RELEASE) return release(app.editor, event);
-    if (!on_canvas(app, event.at) || ImGui::IsAnyItemActive()) return;
+    if (!on_canvas(app, event.at)) return;
+    if (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field) end_gesture(app);
     const glm::dvec2 way = event.at - last_place;
     const double now = glfwGetTime();
     const bool twice =
@@ -170,11 +172,16 @@ void on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
     App& app = app_of(window);
     app.wake();
     if (action == GLFW_RELEASE || app.modal || (mods & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return;
-    if (ImGui::GetIO().WantTextInput ||
-        (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field))
-        return;
     const Shortcut shortcut{editor_key(layout_key(key, scancode)), (mods & GLFW_MOD_CONTROL) != 0,
                             (mods & GLFW_MOD_SHIFT) != 0};
+    const bool field = app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field;
+    if (field || ImGui::GetIO().WantTextInput) {
+        // While something is typed, only the commands for files are keys; they take the number as it stands.
+        const bool for_files =
+            shortcut.ctrl && std::string_view("SEONQ").find(char(shortcut.key)) != std::string_view::npos;
+        if (!for_files) return;
+        end_gesture(app);
+    }
     if (shortcut.key != 0) press_key(app.editor, shortcut);
 }
 
@@ -194,7 +201,7 @@ void on_focus(GLFWwindow* window, int focused) {
     ImGui_ImplGlfw_WindowFocusCallback(window, focused);
     App& app = app_of(window);
     app.wake();
-    if (!focused && app.editor.gesture) cancel(app.editor);
+    if (!focused) end_gesture(app);
 }
 
 void on_close(GLFWwindow* window) {
@@ -319,12 +326,19 @@ void draw_frame(App& app) {
     app.overlays.clear();
     const ImVec2 display = ImGui::GetIO().DisplaySize, corner = canvas_corner(app);
     const float panel = has_picture(app.editor) ? app.px(look::panel) : 0;
+    // Behind work that the window waits for nothing can be used; it keeps its looks, since most is over at
+    // once.
+    const bool busy = is_busy(app);
+    ImGui::PushStyleVar(ImGuiStyleVar_DisabledAlpha, busy ? 1.0f : ImGui::GetStyle().DisabledAlpha);
+    ImGui::BeginDisabled(busy);
     draw_canvas(app, corner.x, corner.y, std::max(1.0f, display.x - corner.x - panel),
                 std::max(1.0f, display.y - corner.y - app.px(look::status)));
     draw_menu_bar(app);
     draw_tool_strip(app);
     draw_panel(app);
     draw_status_bar(app);
+    ImGui::EndDisabled();
+    ImGui::PopStyleVar();
     draw_file_dialog(app);
     draw_export_dialog(app);
     draw_questions(app);

@@ -41,11 +41,14 @@ void check_directory(std::span<const std::byte> bytes) {
         return byte(at) == 'P' && byte(at + 1) == 'K' && byte(at + 2) == kind && byte(at + 3) == version;
     };
     if (bytes.size() < end_size) throw Error("is truncated; expected a whole ZIP archive");
-    const std::size_t first = bytes.size() - std::min(bytes.size(), end_size + longest_comment + 20);
+    const std::size_t first = bytes.size() - std::min(bytes.size(), end_size + longest_comment);
     for (std::size_t at = first; at + end_size <= bytes.size(); ++at) {
-        const bool large = is(at, 6, 7);  // the locator of a Zip64 directory
-        const unsigned members = is(at, 5, 6) ? byte(at + 10) | byte(at + 11) << 8 : 0;
-        if (large || members > max_zip_members)
+        // The end record is the one whose comment ends with the file: a picture's bytes may look like one
+        // too.
+        const std::size_t comment = byte(at + 20) | byte(at + 21) << 8;
+        if (!is(at, 5, 6) || at + end_size + comment != bytes.size()) continue;
+        const bool large = at >= 20 && is(at - 20, 6, 7);  // the locator of a Zip64 directory
+        if (large || (byte(at + 10) | byte(at + 11) << 8) > max_zip_members)
             throw Error(fmt::format("has too many members; expected at most {}", max_zip_members));
     }
 }

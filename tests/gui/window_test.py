@@ -251,6 +251,38 @@ class WindowTest(unittest.TestCase):
         desk.wait_title("good.probewarp – Probewarp")
         self.assertEqual(self.save(desk, "after.probewarp").read_bytes(), project.read_bytes())
 
+    def test_a_second_picture_has_a_mesh_of_its_own(self):
+        desk = self.open_sample()
+        desk.double_click(*desk.at(512, 694))
+        self.save(desk, "first.probewarp")
+        desk.key("ctrl+o")
+        desk.type_path(f"{options.images}/lighthouse.png")
+        desk.wait_title("lighthouse.png – Probewarp")
+        desk.settle()
+        desk.double_click(500, 400)
+        desk.drag([(500, 400), (520, 410), (560, 430)])
+        project = self.save(desk, "second.probewarp")
+        exported = self.export(desk, "second.png")
+        self.assertEqual(exported.read_bytes(), self.render(project, desk.home / "same.png"))
+
+    def test_a_number_being_typed_is_part_of_the_work(self):
+        """A click elsewhere, or a command for files, takes the number as it stands; nothing swallows the next click."""
+        desk = self.open_sample()
+        desk.double_click(*desk.at(512, 694))
+        desk.double_click(1080, 171)
+        desk.key("ctrl+a")
+        desk.ask("type", "600.5")
+        desk.settle()
+        self.assertEqual(project_of(self.save(desk, "typed.probewarp"))["probes"][0]["now"][0], 600.5)
+        desk.double_click(1080, 171)
+        desk.key("ctrl+a")
+        desk.ask("type", "512")
+        desk.settle()
+        x, y = desk.at(512, project_of(desk.home / "typed.probewarp")["probes"][0]["now"][1])
+        desk.drag([(x, y), (x + 20, y - 30), (x + 40, y - 60)])
+        now = project_of(self.save(desk, "dragged.probewarp"))["probes"][0]["now"]
+        self.assertAlmostEqual(now[0], 512 + 40 / desk.zoom, places=6)
+
     def test_a_dropped_file_opens(self):
         desk = self.desk()
         desk.wait_title("Probewarp")

@@ -18,6 +18,17 @@ using testing::real;
 
 constexpr double pi = std::numbers::pi;
 
+TEST_F(EditorTest, AnotherDocumentIsSeenToBeAnother) {
+    // What was drawn is kept by version: with the last document's numbers, its mesh would be taken for this
+    // one's.
+    refresh(editor);
+    const auto mesh = editor.deformation.mesh_version, version = editor.deformation.version;
+    open(testing::blank_document(300, 400, 20));
+    refresh(editor);
+    EXPECT_GT(editor.deformation.mesh_version, mesh);
+    EXPECT_GT(editor.deformation.version, version);
+}
+
 TEST_F(EditorTest, ADoubleClickAddsAProbeAtRest) {
     double_click_at({100, 80});
     ASSERT_EQ(editor.document.probes.size(), 1u);
