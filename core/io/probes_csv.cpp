@@ -72,7 +72,8 @@ std::vector<Probe> decode_probes_csv(std::string_view text, const Document& docu
             throw Error(fmt::format(
                 "line {} is a probe too far away, turned too far, or with a radius out of range", line));
         grown.probes.push_back(probe);
-        if (grown.probes.size() > max_rows) throw Error(fmt::format("line {} is one probe too many; expected at most {}", line, max_rows));
+        if (grown.probes.size() > max_rows)
+            throw Error(fmt::format("line {} is one probe too many; expected at most {}", line, max_rows));
     }
     if (!seen) throw Error("has no line that begins with #probes; expected a CSV of the iPad program");
     return {grown.probes.begin() + std::ptrdiff_t(before), grown.probes.end()};

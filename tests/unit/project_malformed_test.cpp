@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-
 #include "io/file.h"
 #include "io/image_file.h"
 #include "io/project.h"
