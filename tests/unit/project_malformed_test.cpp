@@ -251,6 +251,15 @@ TEST(MalformedProject, AZip64Directory) {
     EXPECT_THAT(refusal(archive), HasSubstr("too many members"));
 }
 
+TEST(MalformedProject, APicturesBytesMayLookLikeADirectory) {
+    auto members = good_members();
+    const Bytes looks_large =
+        to_bytes("PK\6\7 PK\5\6 \377\377\377\377\377\377\377\377\377\377\377\377\377\377\377\377");
+    members[2].bytes.insert(members[2].bytes.end(), looks_large.begin(),
+                            looks_large.end());  // after PNG's end
+    EXPECT_EQ(refusal(members), "");
+}
+
 TEST(MalformedProject, MoreProbesOrWeightsThanFit) {
     const auto first = good_json.find("{\"id\""), end = good_json.find("]}", first);
     const std::string probe = good_json.substr(first, end - first);
