@@ -208,9 +208,14 @@ fs::path export_path(const App& app) {
 void export_to(App& app, const fs::path& path) {
     const ImageFormat* format = image_format_of(path);
     if (is_obj(path)) {
-        const std::string text = encode_obj(app.editor.document, app.editor.deformation);
+        Deformation shape;  // without the weights, which may be large and are not written
+        shape.mesh = app.editor.deformation.mesh;
+        shape.now = app.editor.deformation.now;
         start_job(app, fmt::format("Exporting {}", path.filename().string()), JobKind::writing,
-                  [path, text](const auto&) -> std::function<void(App&)> {
+                  [path, document = app.editor.document,
+                   shape = std::move(shape)](const auto& given_up) -> std::function<void(App&)> {
+                      const std::string text = encode_obj(document, shape);
+                      if (given_up) return {};
                       write_file(path, std::as_bytes(std::span(text)));
                       return
                           [path](App& a) { say(a, Tone::done, fmt::format("Exported {}.", path.string())); };

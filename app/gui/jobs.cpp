@@ -147,7 +147,6 @@ void draw_progress(App& app) {
         }
     }
     ImGui::End();
-    app.wake();
 }
 
 }  // namespace probewarp

@@ -192,6 +192,8 @@ class WindowTest(unittest.TestCase):
 
         exported = self.export(desk, "three.png")
         self.assertEqual(exported.read_bytes(), self.render(project, desk.home / "same.png"))
+        mesh = self.export(desk, "three.obj")
+        self.assertEqual(mesh.read_bytes(), self.render(project, desk.home / "same.obj"))
         desk.key("ctrl+z")
         desk.wait_title("● three.probewarp – Probewarp")
         again = self.export(desk, "fewer.png")
