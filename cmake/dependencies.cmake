@@ -5,6 +5,7 @@ find_package(glm REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(CLI11 2 REQUIRED)
 find_package(fmt 9 REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 
 find_package(JPEG REQUIRED)
 find_package(glfw3 3.3 REQUIRED)

@@ -9,6 +9,14 @@ uniform vec2 scale;
 uniform sampler2D picture;  // straight alpha, alpha-weighted mipmaps
 uniform int last_level;
 
+#ifdef OVERLAY
+in vec4 shade;            // colour and value
+uniform int heat;         // 1: the value in the heat map's colours; 0: the colour
+uniform int iso_lines;    // 1: a line at every tenth of the value
+uniform float opacity;
+uniform vec3 heat_colours[4];
+#endif
+
 out vec4 layer;  // colour times weight, weight: sums of these stay right under filtering, folding and averaging
 
 // The weight of a texel is its alpha, but never nothing: so a colour under zero alpha comes through where it is alone,
@@ -36,6 +44,20 @@ vec4 bilinear(vec2 at, int level) {
                mix(texel(near.x, far.y, level), texel(far.x, far.y, level), part.x), part.y);
 }
 
+#ifdef OVERLAY
+vec3 overlaid() {
+    float at = clamp(shade.a, 0.0, 1.0) * 3.0;
+    int stop = min(int(at), 2);
+    vec3 colour = heat == 1 ? mix(heat_colours[stop], heat_colours[stop + 1], at - float(stop)) : shade.rgb;
+    float tenths = shade.a * 10.0, step = fwidth(tenths);
+    float off = abs(fract(tenths - 0.5) - 0.5);  // from the nearest whole tenth
+    // White on dark and dark on light, about a pixel wide; where the value is flat there is no line.
+    vec3 ink = dot(colour, vec3(0.3, 0.6, 0.1)) > 0.5 ? vec3(0.05) : vec3(1.0);
+    float line = step > 1e-5 ? 1.0 - smoothstep(0.5, 1.3, off / step) : 0.0;
+    return mix(colour, ink, iso_lines == 1 ? 0.8 * line : 0.0);
+}
+#endif
+
 void main() {
     vec2 pixel = 1.0 / scale;  // image pixels
     vec2 at = gl_FragCoord.xy * pixel + origin + back;
@@ -47,4 +69,7 @@ void main() {
     layer = bilinear(at / exp2(float(fine)), fine);
     float part = level - float(fine);
     if (part > 0.0 && fine < last_level) layer = mix(layer, bilinear(at / exp2(float(fine + 1)), fine + 1), part);
+#ifdef OVERLAY
+    layer.rgb = mix(layer.rgb, overlaid() * layer.a, opacity);
+#endif
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -16,6 +17,8 @@
 namespace probewarp {
 
 namespace {
+
+constexpr int max_most = 10000;  // as many probes as a project may hold
 
 /// The names of a table's rows: "dlb, spiral".
 template <class Rows>
@@ -31,6 +34,49 @@ void add_backend(CLI::App& command, std::string& backend) {
         ->envname("PROBEWARP_BACKEND");
 }
 
+/// CLI::Range lets NaN pass.
+CLI::Validator range(double low, double high) {
+    const std::string wanted = fmt::format("{:g} to {:g}", low, high);
+    return {[=](const std::string& text) {
+                const double value = std::strtod(text.c_str(), nullptr);
+                return value >= low && value <= high ? "" : "Value " + text + " not in range " + wanted;
+            },
+            wanted};
+}
+
+std::string check_threshold(const std::string& text) {
+    int value = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = error == std::errc() && end == text.data() + text.size();
+    if (text == "none" || (whole && value >= 0 && value <= 254)) return "";
+    return "Value " + text + " is neither in range 0 to 254 nor none";
+}
+
+void add_binding(CLI::App& command, BindingOptions& o) {
+    command
+        .add_option("--probe", o.probes,
+                    "RX,RY[:X,Y[,DEG[,RADIUS]]]: rest, and where it is now; image pixels and degrees")
+        ->expected(1)
+        ->take_all();
+    command.add_option("--mesh", o.mesh, "Cells along the longer side")
+        ->check(CLI::Range(min_cells, max_cells));
+    command
+        .add_option(
+            "--alpha-threshold", o.alpha_threshold,
+            "The mesh covers the pixels whose alpha is above this, 0 to 254; none: all of the picture")
+        ->check(check_threshold);
+    command.add_option("--alpha-margin", o.alpha_margin, "Image pixels around them that it covers too")
+        ->check(range(0, max_mesh_margin));
+    command.add_option("--weights", o.weights, "Weight scheme")
+        ->check(CLI::IsMember(names(weight_schemes())));
+    command.add_option("--exponent", o.exponent, "Of the distance, in the schemes that go by it")
+        ->check(range(min_exponent, max_exponent));
+    command.add_option("--falloff", o.falloff, "Reaches beyond which a probe has no weight; 0: none")
+        ->check(range(0, max_falloff));
+    command.add_option("--most", o.most, "Probes that a vertex may follow, the heaviest; 0: all")
+        ->check(CLI::Range(0, max_most));
+}
+
 void add_render(CLI::App& app, RenderOptions& o) {
     CLI::App* command = app.add_subcommand("render", "Deform a picture or a project and write the result");
     command->add_option("INPUT", o.input, "A picture or a project")->required();
@@ -38,24 +84,12 @@ void add_render(CLI::App& app, RenderOptions& o) {
         ->add_option("-o,--output", o.output,
                      "PNG, JPEG, BMP, TGA, OBJ (the mesh) or probewarp (a project); - for standard output")
         ->required();
-    command
-        ->add_option("--probe", o.probes,
-                     "RX,RY[:X,Y[,DEG[,RADIUS]]]: rest, and where it is now; image pixels and degrees")
-        ->expected(1)
-        ->take_all();
     command->add_option("--probes", o.probes_csv, "Add the probes of a CSV file of the iPad program");
     command->add_option("--image", o.image, "Put another picture under the probes");
-    command->add_option("--mesh", o.mesh, "Cells along the longer side")
-        ->check(CLI::Range(min_cells, max_cells));
-    command->add_option("--weights", o.weights, "Weight scheme")
-        ->check(CLI::IsMember(names(weight_schemes())));
+    add_binding(*command, o);
     command->add_option("--blend", o.blend, "Blend method")->check(CLI::IsMember(names(blend_methods())));
     auto* scale =
-        command->add_option("--scale", o.scale, "Exported pixels per image pixel")
-            ->check([](const std::string& text) {
-                const double value = std::strtod(text.c_str(), nullptr);  // CLI::Range lets NaN pass
-                return value >= 1e-4 && value <= 1e4 ? "" : "Value " + text + " not in range 0.0001 to 10000";
-            });
+        command->add_option("--scale", o.scale, "Exported pixels per image pixel")->check(range(1e-4, 1e4));
     command->add_option("--size", o.size, "WxH: fit into exactly this many pixels")->excludes(scale);
     command->add_option("--samples", o.samples, "N x N samples a pixel")->check(CLI::Range(1, 16));
     command
@@ -64,10 +98,34 @@ void add_render(CLI::App& app, RenderOptions& o) {
     command->add_option("--background", o.background, "#rrggbb, white, black or none");
     command->add_option("--format", o.format,
                         "png, jpeg, bmp, tga, obj or probewarp, whatever OUTPUT ends with");
+    command->add_option("--heat", o.heat,
+                        "Lay the weights of the probe of that name or number over the picture; all: all "
+                        "probes' colours, mixed by their weights");
+    command->add_option("--opacity", o.opacity, "Of the weights laid over the picture")->check(range(0, 1));
+    command->add_flag("--iso-lines", o.iso_lines,
+                      "A line at every tenth of the weight laid over the picture");
     add_backend(*command, o.backend);
     command->add_option("--deform", o.deform, "processor or shader: which one moves the vertices")
         ->check(CLI::IsMember({"processor", "shader"}));
     command->add_flag("--quiet", o.quiet, "Show no progress");
+}
+
+void add_weights(CLI::App& app, WeightsOptions& o) {
+    CLI::App* command = app.add_subcommand(
+        "weights", "Write each probe's weights as a 16-bit grey PNG, or read such maps as paint");
+    command->add_option("INPUT", o.input, "A picture or a project")->required();
+    command->add_option("-o,--output", o.output, "The folder to write to, which is made where missing");
+    add_binding(*command, o);
+    command->add_option("--size", o.size, "WxH: pixels of the maps, instead of the picture's");
+    command
+        ->add_option(
+            "--import", o.imports,
+            "NAME=FILE.png: paint the probe of that name or number with this map, of any size; grey is "
+            "its share, alpha where it is painted")
+        ->expected(1)
+        ->take_all();
+    command->add_option("--save", o.save, "FILE.probewarp: write the project with what was imported");
+    command->add_flag("--quiet", o.quiet, "Do not tell what is written");
 }
 
 void add_info(CLI::App& app, InfoOptions& o) {
@@ -89,16 +147,20 @@ int run_command_line(int argc, char** argv, int (*open_window)(const std::string
                  "probewarp");
     std::string file;
     RenderOptions render_options;
+    WeightsOptions weights_options;
     InfoOptions info_options;
     app.add_option("FILE", file, "A picture or a project");
     app.set_version_flag("--version", "probewarp " PROBEWARP_VERSION);
     app.require_subcommand(0, 1);
     add_render(app, render_options);
+    add_weights(app, weights_options);
     add_info(app, info_options);
     try {
         app.parse(argc, argv);
         if (app.got_subcommand("render"))
             render(render_options);
+        else if (app.got_subcommand("weights"))
+            weights(weights_options);
         else if (app.got_subcommand("info"))
             info(info_options);
         else

@@ -5,15 +5,33 @@
 #include <string>
 #include <vector>
 
+#include "model/document.h"
+
 namespace probewarp {
 
-struct RenderOptions {
+/// What a command may set of the input's mesh and weights; empty: as the input has it.
+struct BindingOptions {
+    std::vector<std::string> probes;  ///< put down on top of the input's
+    std::optional<int> mesh;          ///< cells
+    std::string alpha_threshold;      ///< 0 to 254; "none": the mesh covers the whole picture
+    std::optional<double> alpha_margin;
+    std::string weights;  ///< the scheme
+    std::optional<double> exponent, falloff;
+    std::optional<int> most;
+};
+
+/// Throws UsageError for a probe that cannot be understood, Error where the weights would be too many.
+void apply(const BindingOptions& options, Document& document);
+
+/// The place in the document of the probe of that name, or else of that number, from 1 in the probes' order.
+/// Throws UsageError, which begins with `option` and lists the names.
+std::size_t probe_named(const Document& document, const std::string& name, const std::string& option);
+
+struct RenderOptions : BindingOptions {
     std::string input, output;
-    std::vector<std::string> probes;
     std::string probes_csv;  ///< of the iPad program; empty: none
     std::string image;       ///< another picture under the probes; empty: the input's
-    std::optional<int> mesh;
-    std::string weights, blend;  ///< empty: the input's
+    std::string blend;       ///< empty: the input's
     double scale = 1;
     std::string size;
     int samples = 1;
@@ -22,9 +40,22 @@ struct RenderOptions {
     std::string backend = "auto";
     std::string deform = "processor";
     std::string format;  ///< empty: by the output's ending
+    std::string heat;    ///< whose weights lie over the picture: a probe, or "all"; empty: nobody's
+    std::optional<double> opacity;  ///< of the heat map
+    bool iso_lines = false;
     bool quiet = false;
 };
 void render(const RenderOptions& options);
+
+struct WeightsOptions : BindingOptions {
+    std::string input;
+    std::string output;                ///< a folder; empty: no weights are written
+    std::string size;                  ///< empty: the picture's own
+    std::vector<std::string> imports;  ///< NAME=FILE.png
+    std::string save;                  ///< a project; empty: none
+    bool quiet = false;
+};
+void weights(const WeightsOptions& options);
 
 struct InfoOptions {
     std::string input;

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "io/printable.h"
 #include "io/project.h"
+#include "model/deformation.h"
 #include "render/context.h"
 
 namespace probewarp {
@@ -22,7 +23,24 @@ Json json_of(const Probe& probe) {
             {"rest", {probe.rest.x, probe.rest.y}},
             {"now", {probe.now.x, probe.now.y}},
             {"angle_degrees", probe.angle * 180 / std::numbers::pi},
-            {"radius", probe.radius}};
+            {"radius", probe.radius},
+            {"painted", probe.paint && !is_blank(*probe.paint)}};
+}
+
+Json json_of(const MeshSettings& settings, const Binding& binding) {
+    const Mesh& mesh = *binding.mesh;
+    return {{"cells", settings.cells},          {"from_alpha", settings.from_alpha},
+            {"threshold", settings.threshold},  {"margin", settings.margin},
+            {"columns", mesh.columns},          {"rows", mesh.rows},
+            {"vertices", mesh.rest.size()},     {"triangles", mesh.triangles.size() / 3},
+            {"islands", binding.islands.count}, {"lone_islands", lone_islands(binding)}};
+}
+
+Json json_of(const WeightSettings& settings) {
+    return {{"scheme", settings.scheme},
+            {"exponent", settings.exponent},
+            {"falloff", settings.falloff},
+            {"most", settings.most}};
 }
 
 std::string renderer_of(const std::string& backend) {
@@ -50,15 +68,11 @@ Json description(const InfoOptions& o) {
               {"alpha", has_alpha(picture.image)},
               {"icc_bytes", picture.image.icc.size()},
               {"pixels_per_metre", nullptr},
-              {"mesh",
-               {{"cells", document.cells},
-                {"columns", deformation.mesh.columns},
-                {"rows", deformation.mesh.rows},
-                {"vertices", deformation.mesh.rest.size()},
-                {"triangles", deformation.mesh.triangles.size() / 3}}},
-              {"weights", document.weights},
+              {"mesh", json_of(document.mesh, *deformation.binding)},
+              {"weights", json_of(document.weights)},
               {"blend", document.blend},
               {"cancelled_vertices", deformation.cancelled},
+              {"stiffness", document.stiffness && !is_blank(*document.stiffness)},
               {"probes", std::move(probes)},
               {"renderer", renderer_of(o.backend)}};
     if (picture.image.resolution)
@@ -66,21 +80,45 @@ Json description(const InfoOptions& o) {
     return json;
 }
 
+void print_mesh(const Json& mesh) {
+    fmt::print("mesh: {} x {} cells, {} vertices; ", mesh["columns"].get<int>(), mesh["rows"].get<int>(),
+               mesh["vertices"].get<std::size_t>());
+    if (mesh["from_alpha"].get<bool>())
+        fmt::print("where alpha is above {}, and {:g} pixels around\n", mesh["threshold"].get<int>(),
+                   mesh["margin"].get<double>());
+    else
+        fmt::print("whatever the alpha\n");
+    const int lone = mesh["lone_islands"].get<int>();
+    fmt::print("islands: {}{}\n", mesh["islands"].get<int>(),
+               lone == 0 ? "" : fmt::format("; without a probe, so that they follow the nearest: {}", lone));
+}
+
+void print_weights(const Json& weights) {
+    const double falloff = weights["falloff"].get<double>();
+    const int most = weights["most"].get<int>();
+    fmt::print("weights: {}, exponent {:g}, falloff {}, probes a vertex may follow: {}\n",
+               printable(weights["scheme"].get<std::string>()), weights["exponent"].get<double>(),
+               falloff > 0 ? fmt::format("{:g} reaches", falloff) : "none",
+               most > 0 ? fmt::format("{}", most) : "all");
+}
+
 void print_text(const Json& json) {
     const auto text = [&json](const char* field) { return printable(json[field].get<std::string>()); };
     fmt::print("{}: {} ({}), {} x {} pixels, {} bits{}\n", text("file"), text("picture"), text("format"),
                json["width"].get<int>(), json["height"].get<int>(), json["bits"].get<int>(),
                json["alpha"].get<bool>() ? ", with transparency" : "");
-    fmt::print("mesh: {} x {} cells, {} vertices\n", json["mesh"]["columns"].get<int>(),
-               json["mesh"]["rows"].get<int>(), json["mesh"]["vertices"].get<std::size_t>());
-    fmt::print("weights: {}; blend: {}; vertices whose weights cancel: {}\n", text("weights"), text("blend"),
+    print_mesh(json["mesh"]);
+    print_weights(json["weights"]);
+    fmt::print("blend: {}; vertices whose weights cancel: {}\n", text("blend"),
                json["cancelled_vertices"].get<std::size_t>());
+    fmt::print("stiffness: {}\n", json["stiffness"].get<bool>() ? "painted" : "none");
     fmt::print("probes: {}\n", json["probes"].size());
     for (const Json& p : json["probes"])
-        fmt::print("  {}: {:g}, {:g} now at {:g}, {:g}, turned {:g} degrees, reach {:g}\n",
+        fmt::print("  {}: {:g}, {:g} now at {:g}, {:g}, turned {:g} degrees, reach {:g}{}\n",
                    printable(p["name"].get<std::string>()), p["rest"][0].get<double>(),
                    p["rest"][1].get<double>(), p["now"][0].get<double>(), p["now"][1].get<double>(),
-                   p["angle_degrees"].get<double>(), p["radius"].get<double>());
+                   p["angle_degrees"].get<double>(), p["radius"].get<double>(),
+                   p["painted"].get<bool>() ? ", painted" : "");
     fmt::print("renderer: {}\n", text("renderer"));
 }
 

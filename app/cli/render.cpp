@@ -16,6 +16,7 @@
 #include "io/project.h"
 #include "render/context.h"
 #include "render/export.h"
+#include "render/overlay.h"
 
 namespace probewarp {
 
@@ -67,12 +68,40 @@ Document document_of(const RenderOptions& o) {
     Document document = read_document(o.input);
     if (!o.image.empty()) replace_picture(document, std::make_shared<const Picture>(read_picture(o.image)));
     if (!o.probes_csv.empty()) add_csv_probes(document, o.probes_csv);
-    for (const std::string& text : o.probes) document.probes.push_back(parse_probe(text, document));
-    if (o.mesh) document.cells = *o.mesh;
-    if (!o.weights.empty()) document.weights = o.weights;
     if (!o.blend.empty()) document.blend = o.blend;
-    check_size(document);
+    apply(o, document);
     return document;
+}
+
+/// Lays the heat map of the weights over the picture, where it is asked for.
+void show_heat(Renderer& renderer, const Deformation& deformation, const RenderOptions& o) {
+    if (o.heat.empty()) return;
+    const Document& document = deformation.source;
+    OverlayStyle style{.heat = o.heat != "all", .iso_lines = o.iso_lines};
+    if (o.opacity) style.opacity = float(*o.opacity);
+    const int probe = style.heat ? document.probes[probe_named(document, o.heat, "--heat")].id : 0;
+    renderer.set_overlay(weight_overlay(deformation, probe), style);
+}
+
+void check_heat(const RenderOptions& o, Kind kind, const Document& document) {
+    if (o.heat.empty()) {
+        if (o.opacity || o.iso_lines)
+            throw UsageError(
+                fmt::format("--{}: expected --heat with it", o.opacity ? "opacity" : "iso-lines"));
+        return;
+    }
+    if (kind != Kind::image)
+        throw UsageError("--heat: this output has no pixels; expected a picture's format");
+    if (o.deform == "shader")
+        throw UsageError(
+            "--heat: the shader that deforms has no colours over it; expected --deform processor");
+    if (o.heat != "all")
+        probe_named(document, o.heat, "--heat");
+    else if (document.probes.empty())
+        throw UsageError("--heat all: there are no probes");
+    else if (o.iso_lines)
+        throw UsageError(
+            "--iso-lines: these are of one probe's share; expected a probe, not all, with --heat");
 }
 
 /// Shows how far a render is, once it has taken a second and where somebody watches.
@@ -102,12 +131,13 @@ Image rendered(const Document& document, const Deformation& deformation, const E
     const auto context = open_context(o.backend);
     Renderer renderer;
     renderer.set_picture(upload_picture(document.picture->image));
-    renderer.set_mesh(deformation.mesh);
+    renderer.set_mesh(mesh_of(deformation));
     if (o.deform == "shader")
-        renderer.set_blend(deformation.weights, deformation.transformations,
+        renderer.set_blend(weights_of(deformation), deformation.transformations,
                            glm::vec2(centre(document.picture->image)));
     else
-        renderer.set_positions(deformation.now);
+        renderer.set_positions(deformation.now, deformation.moved);
+    show_heat(renderer, deformation, o);
     ExportJob job(renderer, document, deformation, settings);
     while (!job.done()) {
         job.step();
@@ -128,6 +158,7 @@ void render(const RenderOptions& o) {
     const OutputFormat format = output_format(o);
     const ExportSettings settings = export_settings(o);
     const Document document = document_of(o);
+    check_heat(o, format.kind, document);
     std::error_code ignored;
     if (format.kind != Kind::project && o.output != "-" &&
         std::filesystem::equivalent(o.input, o.output, ignored))

@@ -4,6 +4,8 @@
 #include <array>
 #include <cassert>
 
+#include "editor/paint_commands.h"
+#include "editor/painting.h"
 #include "editor/tools.h"
 
 namespace probewarp {
@@ -76,6 +78,16 @@ void toggle_lock(Editor& editor) {
     commit(editor, (probe.locked ? "Lock " : "Unlock ") + probe.name);
 }
 
+template <ShownWeights W>
+void toggle_weights(Editor& editor) {
+    editor.shown_weights = editor.shown_weights == W ? ShownWeights::none : W;
+    editor.shown_by_brush = false;
+}
+template <ShownWeights W>
+bool shows_weights(const Editor& editor) {
+    return editor.shown_weights == W;
+}
+
 void show_whole(Editor& editor) { editor.fit_wanted = true; }
 void show_actual(Editor& editor) { zoom_canvas(editor, editor.canvas_size / 2.0, 1 / editor.view.zoom); }
 void zoom_in(Editor& editor) { zoom_canvas(editor, editor.canvas_size / 2.0, 1.5); }
@@ -106,6 +118,47 @@ constexpr Command all[] = {
      }},
     {"Probe", "Put back to rest", {'R', true}, &needs_unlocked, &reset_probe, true},
     {"Probe", "Reset the pose of all", {'R', true, true}, &needs_pose, &reset_pose},
+    {"Weights",
+     "Show the chosen probe's",
+     {'W'},
+     &needs_picture,
+     &toggle_weights<ShownWeights::chosen>,
+     false,
+     &shows_weights<ShownWeights::chosen>},
+    {"Weights",
+     "Show all in the probes' colours",
+     {'W', false, true},
+     &needs_picture,
+     &toggle_weights<ShownWeights::all>,
+     false,
+     &shows_weights<ShownWeights::all>},
+    {"Weights",
+     "Iso-lines",
+     {'I'},
+     &needs_picture,
+     [](Editor& e) { e.iso_lines = !e.iso_lines; },
+     false,
+     [](const Editor& e) { return e.iso_lines; }},
+    {"Weights",
+     "Mirror strokes",
+     {'X'},
+     &needs_picture,
+     [](Editor& e) { e.mirror = !e.mirror; },
+     false,
+     [](const Editor& e) { return e.mirror; }},
+    {"Weights", "Fill with the brush's value", {}, &needs_paintable, &fill_paint, true},
+    {"Weights", "Invert", {'I', true}, &needs_paintable, &invert_paint},
+    {"Weights", "Blur", {}, &needs_paintable, &blur_paint},
+    {"Weights", "Levels…", {}, &needs_paintable, &ask<Request::levels>},
+    {"Weights", "Copy paint", {'C', true}, &needs_paint, &copy_paint, true},
+    {"Weights", "Paste paint", {'V', true}, &needs_copied_paint, &paste_paint},
+    {"Weights", "Mirror left to right", {}, &needs_paint, &mirror_left_to_right},
+    {"Weights", "Mirror right to left", {}, &needs_paint, &mirror_right_to_left},
+    {"Weights", "Limit to four probes a place", {}, &needs_any_paint, &limit_paint, true},
+    {"Weights", "Normalise", {}, &needs_any_paint, &normalise_paint},
+    {"Weights", "Clear the probe's paint", {}, &needs_paint, &clear_paint, true},
+    {"Weights", "Clear all paint", {}, &needs_any_paint, &clear_all_paint},
+    {"Weights", "Clear stiffness", {}, &needs_stiffness, &clear_stiffness},
     {"View", "Fit", {'F'}, &needs_picture, &show_whole},
     {"View", "100 %", {'1'}, &needs_picture, &show_actual},
     {"View", "Zoom in", {'='}, &needs_picture, &zoom_in},
@@ -170,6 +223,7 @@ bool press_key(Editor& editor, const Shortcut& key) {
         cancel(editor);
         return true;
     }
+    if (!key.ctrl && !key.shift && press_brush_key(editor, key.key)) return true;
     for (const Command& command : all)
         if (command.shortcut.key != 0 && command.shortcut == key) {
             run(editor, command);
@@ -183,7 +237,7 @@ bool press_key(Editor& editor, const Shortcut& key) {
     if (editor.gesture || key.ctrl) return false;
     for (const Tool& tool : tools())
         if (key == Shortcut{tool.key}) {
-            editor.tool = &tool;
+            choose_tool(editor, tool);
             return true;
         }
     const double step = key.shift ? 10 : 1;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "editor/painting.h"
 #include "editor/tools.h"
 #include "model/error.h"
 
@@ -28,11 +29,17 @@ void start(Editor& editor, Document document, std::filesystem::path path, bool s
     editor.deformation = std::move(fresh);
     ++editor.opened;
     editor.path = std::move(path);
+    editor.axis.reset();
+    if (has_picture(editor)) editor.brush.radius = default_brush_radius(editor.document.picture->image);
     editor.fit_wanted = true;
 }
 
 void refresh(Editor& editor) {
-    if (has_picture(editor)) update(editor.deformation, editor.document);
+    if (!has_picture(editor)) return;
+    auto& deformation = editor.deformation;
+    if (!editor.binds_elsewhere) return update(deformation, editor.document);
+    if (fits(deformation.binding.get(), editor.document))
+        pose(deformation, editor.document, deformation.binding);
 }
 
 void commit(Editor& editor, std::string label) {
@@ -46,6 +53,7 @@ void cancel(Editor& editor) {
         return;
     }
     if (editor.gesture->kind == Gesture::Kind::pan) editor.view.corner = editor.gesture->start_corner;
+    if (editor.gesture->kind == Gesture::Kind::brush_size) editor.brush.radius = editor.gesture->start_radius;
     editor.document = std::move(editor.gesture->before);
     editor.gesture.reset();
     if (!selected_probe(editor)) editor.selected = 0;
@@ -79,7 +87,7 @@ int put_probe(Editor& editor, glm::dvec2 at) {
     if (!has_picture(editor)) return 0;
     refresh(editor);
     const glm::dvec2 point = to_image(editor.view, at);
-    const auto pose = pose_at(editor.deformation, point);
+    const auto pose = editor.deformation.binding ? pose_at(editor.deformation, point) : std::nullopt;
     if (!pose) {
         editor.notice = "There is no picture there to put a probe on.";
         return 0;

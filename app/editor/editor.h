@@ -5,12 +5,15 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "editor/view.h"
-#include "model/document.h"
+#include "model/brush.h"
+#include "model/deformation.h"
 #include "model/history.h"
 
 namespace probewarp {
@@ -34,17 +37,21 @@ struct Hit {
     friend bool operator==(const Hit&, const Hit&) = default;
 };
 
+struct PaintStroke;
+
 /// What lasts from press to release: the document before it, and what is dragged.
 struct Gesture {
-    enum class Kind { pan, move, turn, reach, field } kind = Kind::pan;
+    enum class Kind { pan, move, turn, reach, field, paint, brush_size, axis } kind = Kind::pan;
     Document before;
     int probe = 0;
-    PointerEvent pressed;        ///< what began it
-    glm::dvec2 last{0};          ///< canvas pixels: where the pointer was at the last event
-    glm::dvec2 start_corner{0};  ///< pan: the view's corner then
-    double raw_angle = 0;        ///< turn: radians, unwrapped, before snapping
-    std::string label;           ///< of the step it becomes
-    bool moved = false;          ///< further than a click may tremble
+    PointerEvent pressed;                 ///< what began it
+    glm::dvec2 last{0};                   ///< canvas pixels: where the pointer was at the last event
+    glm::dvec2 start_corner{0};           ///< pan: the view's corner then
+    double raw_angle = 0;                 ///< turn: radians, unwrapped, before snapping
+    double start_radius = 0;              ///< brush_size: the brush's then, image pixels
+    std::shared_ptr<PaintStroke> stroke;  ///< paint
+    std::string label;                    ///< of the step it becomes
+    bool moved = false;                   ///< further than a click may tremble
 };
 
 /// What the editor asks of its surroundings.
@@ -57,11 +64,21 @@ enum class Request {
     import_probes,
     replace_picture,
     switch_theme,
+    levels,
     about,
     quit,
 };
 
+/// Work too long for the window's thread: `run` gives the document that becomes a step of that label.
+struct Task {
+    std::string label;
+    std::function<Document()> run;
+};
+
 struct Tool;
+
+/// What of the weights is shown over the picture.
+enum class ShownWeights { none, chosen, all };
 
 struct Editor {
     History history;
@@ -81,8 +98,21 @@ struct Editor {
     std::optional<glm::dvec2> pointer;  ///< canvas pixels; empty while it is elsewhere
     std::optional<Gesture> gesture;
     bool show_probes = true, show_mesh = false;
+    ShownWeights shown_weights = ShownWeights::none;
+    bool shown_by_brush = false;  ///< they go when the brush is put down
+    bool iso_lines = false;
+    float weights_opacity = 0.65f;
+
+    Brush brush;
+    bool mirror = false;             ///< strokes are painted on both sides of the axis
+    std::optional<MirrorAxis> axis;  ///< empty: upright through the picture's middle
+    PaintPtr copied_paint;           ///< null: nothing was copied
+
+    /// The window works bindings out beside itself; without one refresh does, at once.
+    bool binds_elsewhere = false;
 
     std::vector<Request> requests;  ///< taken and emptied by the window
+    std::vector<Task> tasks;        ///< likewise
     std::string notice;             ///< a sentence to show once; taken and emptied by the window
 
     Editor();
@@ -94,7 +124,8 @@ Probe* selected_probe(Editor& editor);
 /// Begins with another document: opened from `path` (a project) or from nothing.
 void start(Editor& editor, Document document, std::filesystem::path path, bool saved);
 
-/// Brings the deformation up to date with the document. Called before drawing.
+/// Brings the deformation up to date with the document, as far as that goes without the window's help. Called
+/// before drawing.
 void refresh(Editor& editor);
 
 /// Makes `document` a step of the history, unless nothing changed. Ends a gesture.

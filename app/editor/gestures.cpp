@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "editor/painting.h"
 #include "editor/tools.h"
 
 namespace probewarp {
@@ -45,6 +46,7 @@ void drag(Editor& editor, const PointerEvent& event) {
         gesture.moved = gesture.moved || wandered(editor);
         return;
     }
+    if (is_brush_gesture(gesture.kind)) return drag_brush(editor, event);
     Probe* probe = find_probe(editor.document, gesture.probe);
     if (!probe) return;
     if (gesture.kind == Gesture::Kind::turn) return turn_probe(editor, gesture, *probe, event);
@@ -75,7 +77,7 @@ void move(Editor& editor, const PointerEvent& event) {
     if (editor.gesture && editor.gesture->kind != Gesture::Kind::field)
         drag(editor, event);
     else if (has_picture(editor))
-        editor.hover = hit_test(editor, event.at);
+        editor.hover = is_painting_tool(editor) && !event.alt ? Hit{} : hit_test(editor, event.at);
 }
 
 void release(Editor& editor, const PointerEvent& event) {
@@ -90,6 +92,7 @@ void release(Editor& editor, const PointerEvent& event) {
         if (clicked && by_tool && editor.tool->click) editor.tool->click(editor, event);
         return;
     }
+    if (is_brush_gesture(editor.gesture->kind)) return release_brush(editor);
     commit(editor, editor.gesture->label);
 }
 

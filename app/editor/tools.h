@@ -23,9 +23,13 @@ struct Tool {
 std::span<const Tool> tools();
 const Tool& find_tool(std::string_view name);
 
+/// Takes the tool up. The brush shows the weights while it is in the hand, unless they were shown anyway.
+void choose_tool(Editor& editor, const Tool& tool);
+
 void press_select(Editor& editor, const PointerEvent& event);
 void press_add(Editor& editor, const PointerEvent& event);
 void press_zoom(Editor& editor, const PointerEvent& event);
+void press_brush(Editor& editor, const PointerEvent& event);
 void click_zoom(Editor& editor, const PointerEvent& event);
 
 /// Begins a gesture on the document as it stands.

@@ -208,8 +208,8 @@ fs::path export_path(const App& app) {
 void export_to(App& app, const fs::path& path) {
     const ImageFormat* format = image_format_of(path);
     if (is_obj(path)) {
-        Deformation shape;  // without the weights, which may be large and are not written
-        shape.mesh = app.editor.deformation.mesh;
+        Deformation shape;  // without the refined weights, which may be large and are not written
+        shape.binding = app.editor.deformation.binding;
         shape.now = app.editor.deformation.now;
         start_job(app, fmt::format("Exporting {}", path.filename().string()), JobKind::writing,
                   [path, document = app.editor.document,
@@ -248,6 +248,24 @@ void export_to(App& app, const fs::path& path) {
     app.wake();
 }
 
+namespace {
+
+void start_task(App& app, Task task) {
+    const std::size_t step = app.editor.history.at;
+    start_job(
+        app, task.label, JobKind::reading,
+        [task = std::move(task), step, opened = app.editor.opened](const auto&) -> std::function<void(App&)> {
+            auto document = std::make_shared<const Document>(task.run());
+            return [document, label = task.label, step, opened](App& a) {
+                if (a.editor.opened != opened || a.editor.history.at != step) return;
+                a.editor.document = *document;
+                commit(a.editor, label);
+            };
+        });
+}
+
+}  // namespace
+
 void handle_requests(App& app) {
     if (!app.questions.empty()) app.editor.requests.clear();  // one question at a time
     for (const Request request : std::exchange(app.editor.requests, {})) switch (request) {
@@ -275,6 +293,9 @@ void handle_requests(App& app) {
             case Request::switch_theme:
                 switch_theme(app);
                 break;
+            case Request::levels:
+                app.levels_dialog.open = true;
+                break;
             case Request::about:
                 app.about_open = true;
                 break;
@@ -282,6 +303,7 @@ void handle_requests(App& app) {
                 after_saving(app, "leaving", [](App& a) { a.quit = true; });
                 break;
         }
+    for (Task& task : std::exchange(app.editor.tasks, {})) start_task(app, std::move(task));
     if (!app.editor.notice.empty()) say(app, Tone::hint, std::exchange(app.editor.notice, {}));
 }
 

@@ -10,10 +10,12 @@
 #include <vector>
 
 #include "editor/editor.h"
+#include "gui/binding_job.h"
 #include "gui/file_dialog.h"
 #include "gui/fonts.h"
 #include "gui/jobs.h"
 #include "gui/messages.h"
+#include "gui/overlay.h"
 #include "gui/samples.h"
 #include "gui/theme.h"
 #include "render/export.h"
@@ -28,6 +30,7 @@ struct Shown {
     CanvasView view;
     glm::ivec2 size{0};
     bool mesh = false, light = false;
+    OverlayKey overlay;
     GLuint texture = 0;
 };
 
@@ -40,6 +43,12 @@ struct ExportDialog {
     int quality = 95;
     std::string path;
     bool overwrite_asked = false;  ///< the path exists and the person was told so
+};
+
+/// The dialog that asks for levels.
+struct LevelsDialog {
+    bool open = false;
+    double black = 0, white = 1, gamma = 1;
 };
 
 /// A question with up to three answers.
@@ -63,17 +72,24 @@ struct App {
     Shown shown;
     PicturePtr uploaded;  ///< the picture that the renderer holds
     double deform_milliseconds = 0;
+    std::unique_ptr<BindingJob> binding_job;      ///< null while none is under way
+    std::shared_ptr<const Binding> last_binding;  ///< whatever document it is of: the next one starts from it
+    std::optional<Document> unbound;              ///< the document whose binding failed
+    std::optional<MeshPoint> under;               ///< of the deformed mesh under the pointer
+    std::vector<double> shares;                   ///< #probes: there; empty beside the picture
 
     Jobs jobs;
     std::vector<Message> messages;
     std::vector<std::pair<ImVec2, ImVec2>> overlays;  ///< what lies over the canvas in this frame
     FileDialog file_dialog;
     ExportDialog export_dialog;
+    LevelsDialog levels_dialog;
     std::vector<Question> questions;  ///< asked one after the other
     bool about_open = false;
     Samples samples;
     bool modal = false;  ///< a dialog is open: the canvas and the shortcuts rest
-    bool probes_open = true, probe_open = true, deformation_open = true;
+    bool probes_open = true, probe_open = true, brush_open = true, deformation_open = true,
+         weights_open = true;
     double busy_since = -1;  ///< seconds of ImGui's clock; negative while nothing blocks
     ImGuiID field = 0;       ///< the item of the panel field being edited
     int renaming = 0;        ///< probe id

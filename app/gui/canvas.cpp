@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
+#include "editor/painting.h"
 #include "editor/tools.h"
 #include "gui/app.h"
 #include "gui/widgets.h"
@@ -14,17 +14,6 @@ namespace probewarp {
 
 namespace {
 
-/// Brings the deformation up to date with the document, and keeps the time it took.
-void update_deformation(App& app) {
-    Editor& editor = app.editor;
-    using Clock = std::chrono::steady_clock;
-    const auto before = Clock::now();
-    const unsigned long version = editor.deformation.version;
-    refresh(editor);
-    if (editor.deformation.version != version)
-        app.deform_milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - before).count();
-}
-
 bool same(const CanvasView& a, const CanvasView& b) { return a.corner == b.corner && a.zoom == b.zoom; }
 
 void update_texture(App& app, glm::ivec2 size) {
@@ -32,10 +21,16 @@ void update_texture(App& app, glm::ivec2 size) {
     if (app.jobs.exporting) return;  // the renderer is busy; the canvas keeps its last picture
     if (app.uploaded != app.editor.document.picture) return prepare_picture(app, app.editor.document.picture);
     const Editor& editor = app.editor;
+    // Another picture's mesh is no way to show this one: the canvas waits for its binding.
+    if (!fits(editor.deformation.binding.get(), editor.document) &&
+        editor.deformation.source.picture != editor.document.picture)
+        return;
     Shown& shown = app.shown;
+    const OverlayKey overlay = overlay_key(editor);
     if (shown.picture == app.uploaded && shown.version == editor.deformation.version &&
         shown.mesh_version == editor.deformation.mesh_version && same(shown.view, editor.view) &&
-        shown.size == size && shown.mesh == editor.show_mesh && shown.light == app.theme.is_light)
+        shown.size == size && shown.mesh == editor.show_mesh && shown.light == app.theme.is_light &&
+        shown.overlay == overlay)
         return;
     View view;
     view.scale = glm::dvec2(editor.view.zoom);
@@ -44,6 +39,7 @@ void update_texture(App& app, glm::ivec2 size) {
     view.height = size.y;
     const bool new_mesh = shown.mesh_version != editor.deformation.mesh_version;
     const bool new_positions = new_mesh || shown.version != editor.deformation.version;
+    const bool new_overlay = new_positions || !(shown.overlay == overlay);
     // Kept before the drawing: where it fails, it is tried again only when something has changed.
     const GLuint texture = shown.texture;
     shown = {app.uploaded,
@@ -53,16 +49,30 @@ void update_texture(App& app, glm::ivec2 size) {
              size,
              editor.show_mesh,
              app.theme.is_light,
+             overlay,
              texture};
     try {
-        if (new_mesh) app.renderer->set_mesh(editor.deformation.mesh);
-        if (new_positions) app.renderer->set_positions(editor.deformation.now);
+        if (new_mesh) app.renderer->set_mesh(mesh_of(editor.deformation));
+        if (new_positions) app.renderer->set_positions(editor.deformation.now, editor.deformation.moved);
+        if (new_overlay) app.renderer->set_overlay(overlay_vertices(editor, overlay), overlay_style(overlay));
         app.renderer->draw(view, 1);
         shown.texture =
             app.renderer->display(view, display_colours(app.theme), double(app.px(12)), editor.show_mesh);
     } catch (const std::exception& error) {
         say(app, Tone::error, error.what());
     }
+}
+
+void look_under_pointer(App& app) {
+    const Editor& editor = app.editor;
+    app.under.reset();
+    app.shares.clear();
+    const bool shown =
+        editor.deformation.binding && editor.deformation.source.picture == editor.document.picture;
+    if (!editor.pointer || !shown) return;
+    app.under =
+        locate(mesh_of(editor.deformation), editor.deformation.now, to_image(editor.view, *editor.pointer));
+    if (app.under) app.shares = shares_at(editor.deformation, *app.under);
 }
 
 /// Draws probes at a place of the window, in the look of look.md.
@@ -149,6 +159,41 @@ void draw_gesture_label(const App& app, const ProbePainter& painter) {
                text, bright, 0.88f, app.px(6));
 }
 
+/// The brush's circle about the pointer, with the part that a dab covers wholly, and what is mirrored.
+void draw_brush(const App& app, const ProbePainter& painter) {
+    const Editor& editor = app.editor;
+    if (!is_painting_tool(editor) || app.modal) return;
+    const ImU32 dark = IM_COL32(0x0d, 0x0f, 0x12, 200), light = IM_COL32(255, 255, 255, 235);
+    ImDrawList* list = painter.list;
+    if (editor.mirror) {
+        const MirrorAxis axis = mirror_axis(editor);
+        const glm::dvec2 along{std::sin(axis.angle), -std::cos(axis.angle)};
+        const double far =
+            2 * double(std::max(editor.document.picture->image.width, editor.document.picture->image.height));
+        const ImVec2 from = painter.at(to_canvas(editor.view, axis.point - far * along)),
+                     to = painter.at(to_canvas(editor.view, axis.point + far * along));
+        list->AddLine(from, to, faded(dark, 0.6f), app.px(3));
+        list->AddLine(from, to, app.theme.accent, app.px(1));
+        const ImVec2 grip = painter.at(axis_grip(editor));
+        list->AddCircleFilled(grip, app.px(8), dark, 24);
+        list->AddCircleFilled(grip, app.px(6.5), app.theme.accent, 24);
+    }
+    // While it is sized by hand the circle stays where that began.
+    const bool sized = editor.gesture && editor.gesture->kind == Gesture::Kind::brush_size;
+    if (!editor.pointer && !sized) return;
+    const ImVec2 middle = painter.at(sized ? editor.gesture->pressed.at : *editor.pointer);
+    const float radius = float(editor.brush.radius * editor.view.zoom);
+    const int segments = std::clamp(int(radius), 24, 200);
+    list->AddCircle(middle, radius, dark, segments, app.px(3));
+    list->AddCircle(middle, radius, light, segments, app.px(1.25));
+    if (editor.brush.hardness > 0.02 && editor.brush.hardness < 0.98)
+        list->AddCircle(middle, radius * float(editor.brush.hardness), faded(light, 0.5f), segments,
+                        app.px(1));
+    if (sized)
+        draw_label(app, list, {middle.x + app.px(16), middle.y - app.px(40)},
+                   fmt::format("{:.0f} px", editor.brush.radius), bright, 0.88f, app.px(6));
+}
+
 void draw_hint(const App& app, ImDrawList* list, float left, float bottom, float width) {
     const std::string text(app.editor.tool->hint);
     ImGui::PushFont(app.fonts.small);
@@ -162,6 +207,7 @@ void draw_hint(const App& app, ImDrawList* list, float left, float bottom, float
 void choose_cursor(const Editor& editor) {
     if (editor.gesture && editor.gesture->kind == Gesture::Kind::pan)
         return ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+    if (is_painting_tool(editor)) return ImGui::SetMouseCursor(ImGuiMouseCursor_None);
     if (editor.hover.part == Part::disc) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
     if (editor.hover.part == Part::knob || editor.hover.part == Part::reach)
         ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
@@ -189,6 +235,7 @@ void draw_canvas(App& app, float left, float top, float width, float height) {
         return;
     }
     update_texture(app, {int(width), int(height)});
+    look_under_pointer(app);
     ImDrawList* list = ImGui::GetWindowDrawList();
     if (app.shown.texture != 0 && app.shown.picture == editor.document.picture)
         list->AddImage(reinterpret_cast<ImTextureID>(std::uintptr_t(app.shown.texture)), {left, top},
@@ -202,6 +249,7 @@ void draw_canvas(App& app, float left, float top, float width, float height) {
             painter.draw(*chosen);
         draw_gesture_label(app, painter);
     }
+    draw_brush(app, painter);
     draw_hint(app, list, left, top + height, width);
     list->PopClipRect();
     if (editor.pointer && !app.modal) choose_cursor(editor);

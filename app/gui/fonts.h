@@ -20,11 +20,12 @@ inline constexpr const char *undo = "\uF54C", *redo = "\uF44F", *export_ = "\uF2
                             *grid = "\uF2C1", *down = "\uF140", *right = "\uF142", *plus = "\uF415",
                             *lock = "\uF33E", *lock_open = "\uF33F", *close = "\uF156", *copy = "\uF18F",
                             *folder = "\uF24B", *image = "\uF2E9", *home = "\uF2DC", *up = "\uF05D",
-                            *alert = "\uF028", *info = "\uF2FC", *done = "\uF5E0", *palette = "\uF3D8";
+                            *alert = "\uF028", *info = "\uF2FC", *done = "\uF5E0", *palette = "\uF3D8",
+                            *brush = "\uF0E3", *pin = "\uF403";
 /// Every one of the above.
 inline constexpr const char* all =
     "\uF54C\uF44F\uF207\uF1B4\uF651\uF349\uF208\uF209\uF2C1\uF140\uF142\uF415\uF33E\uF33F\uF156\uF18F\uF24B"
-    "\uF2E9\uF2DC\uF05D\uF028\uF2FC\uF5E0\uF3D8";
+    "\uF2E9\uF2DC\uF05D\uF028\uF2FC\uF5E0\uF3D8\uF0E3\uF403";
 }  // namespace icon
 
 }  // namespace probewarp

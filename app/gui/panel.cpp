@@ -9,7 +9,9 @@
 #include <numbers>
 
 #include "editor/commands.h"
+#include "editor/painting.h"
 #include "gui/app.h"
+#include "gui/brush_panel.h"
 #include "gui/panels.h"
 #include "gui/widgets.h"
 
@@ -51,6 +53,18 @@ void draw_name(App& app, Probe& probe, ImVec2 at, bool chosen) {
     edit_at_once(app, "Rename probe");
 }
 
+/// The probe's weight under the cursor, ending at `at`.
+void draw_share(App& app, const Probe& probe, ImVec2 at) {
+    const auto& probes = app.editor.document.probes;
+    if (app.shares.size() != probes.size() || app.renaming == probe.id) return;
+    const std::string text = fmt::format("{:.2f}", app.shares[std::size_t(&probe - probes.data())]);
+    ImFont* font = app.fonts.small;
+    const float width = font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, text.c_str()).x;
+    ImGui::GetWindowDrawList()->AddText(
+        font, font->FontSize, {at.x - width, std::round(at.y + (app.px(look::field) - font->FontSize) / 2)},
+        app.theme.muted, text.c_str());
+}
+
 void draw_probe_row(App& app, Probe& probe) {
     Editor& editor = app.editor;
     ImGui::PushID(probe.id);
@@ -73,6 +87,7 @@ void draw_probe_row(App& app, Probe& probe) {
     list->AddCircleFilled({at.x + app.px(18), at.y + height / 2}, app.px(6),
                           to_u32(probe.colour, probe.visible ? 1 : 0.4f), 24);
     draw_name(app, probe, at, chosen);
+    draw_share(app, probe, {at.x + width - app.px(68), at.y});
     ImGui::SetCursorScreenPos({at.x + width - app.px(62), at.y});
     ImGui::PushStyleVar(ImGuiStyleVar_Alpha,
                         probe.locked ? 1.0f : 0.5f);  // most are unlocked: they step back
@@ -125,9 +140,7 @@ void point_fields(App& app, const char* label, glm::dvec2& point, const Probe& p
 void draw_chosen_probe(App& app) {
     Probe* probe = selected_probe(app.editor);
     if (!probe) return;
-    ImGui::Dummy({0, app.px(4)});
-    ImGui::Separator();
-    ImGui::Dummy({0, app.px(4)});
+    begin_section_gap(app);
     if (!section(app, "chosen", probe->name.c_str(), app.probe_open)) return;
     ImGui::BeginDisabled(probe->locked);
     point_fields(app, "Now", probe->now, *probe);
@@ -167,55 +180,116 @@ void method_combo(App& app, const char* label, std::string& name, const Rows& ro
     ImGui::PopID();
 }
 
-/// Takes the density unless the mesh would need more weights than fit; says so then.
-void set_cells(App& app, int cells) {
+/// Takes the mesh's settings unless it would need more weights than fit; says so then.
+void set_mesh(App& app, const MeshSettings& mesh) {
     Document changed = app.editor.document;
-    changed.cells = cells;
+    changed.mesh = mesh;
     try {
         check_size(changed);
-        app.editor.document.cells = cells;
+        app.editor.document.mesh = mesh;
     } catch (const Error& error) {
         app.editor.notice = error.what();
     }
 }
 
-/// A slim slider with a round grip, quadratic so that coarse meshes have room.
+/// Cubic, so that coarse meshes have room.
 void mesh_slider(App& app) {
     row_label(app, "Mesh", 68);
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x - app.px(48), height = app.px(look::field);
-    ImGui::InvisibleButton("##mesh", {width, height});
-    constexpr double least = 2, most = 400;
-    if (ImGui::IsItemActive()) {
-        is_step(app, "Mesh density");
-        const double part = std::clamp(double((ImGui::GetIO().MousePos.x - at.x) / width), 0.0, 1.0);
-        set_cells(app, int(std::lround(least + (most - least) * part * part)));
-    }
-    const int cells = app.editor.document.cells;
-    const float part = float(std::sqrt(std::clamp((cells - least) / (most - least), 0.0, 1.0)));
-    const float middle = at.y + height / 2, grip = at.x + part * width;
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled({at.x, middle - app.px(2)}, {at.x + width, middle + app.px(2)}, app.theme.line,
-                        app.px(2));
-    list->AddRectFilled({at.x, middle - app.px(2)}, {grip, middle + app.px(2)}, app.theme.accent, app.px(2));
-    list->AddCircleFilled({grip, middle}, app.px(7), IM_COL32_WHITE, 24);
-    list->AddCircle({grip, middle}, app.px(7), app.theme.line, 24);
-    tooltip("Cells along the picture's longer side");
-    ImGui::SameLine(0, app.px(8));
-    int typed = cells;
-    ImGui::SetNextItemWidth(app.px(40));
-    if (ImGui::InputInt("##cells", &typed, 0, 0)) set_cells(app, std::clamp(typed, min_cells, max_cells));
+    constexpr double least = 10, most = max_cells;
+    MeshSettings mesh = app.editor.document.mesh;
+    double part = std::cbrt(std::clamp((mesh.cells - least) / (most - least), 0.0, 1.0));
+    const bool moved = slim_slider(app, "##mesh", part, ImGui::GetContentRegionAvail().x - app.px(48));
     is_step(app, "Mesh density");
+    tooltip("Cells along the picture's longer side");
+    if (moved) mesh.cells = int(std::lround(least + (most - least) * part * part * part));
+    ImGui::SameLine(0, app.px(8));
+    ImGui::SetNextItemWidth(app.px(40));
+    int typed = mesh.cells;
+    const bool entered = ImGui::InputInt("##cells", &typed, 0, 0);
+    is_step(app, "Mesh density");
+    if (entered) mesh.cells = std::clamp(typed, min_cells, max_cells);
+    if (moved || entered) set_mesh(app, mesh);
+}
+
+/// How the mesh follows the picture's transparency, and what came of it.
+void outline_rows(App& app) {
+    Document& document = app.editor.document;
+    row_label(app, "Outline", 68);
+    MeshSettings mesh = document.mesh;
+    if (ImGui::Checkbox("Only where there is picture", &mesh.from_alpha)) {
+        set_mesh(app, mesh);
+        edit_at_once(app, "Outline");
+    }
+    tooltip("Leaves out the cells without a visible pixel, so that limbs that do not touch are not joined");
+    if (!mesh.from_alpha) return;
+    row_label(app, "", 68);
+    const float width = (ImGui::GetContentRegionAvail().x - app.px(8)) / 2;
+    double threshold = mesh.threshold;
+    if (number_field(app, "##threshold", threshold, "alpha >", width, 0.25, 0, 254)) {
+        document.mesh.threshold = int(std::lround(threshold));
+    }
+    is_step(app, "Outline threshold");
+    tooltip("Pixels with more alpha than this (0 to 255) are visible");
+    ImGui::SameLine(0, app.px(8));
+    number_field(app, "##margin", document.mesh.margin, "px margin", width, 0.25, 0, max_mesh_margin);
+    is_step(app, "Outline margin");
+    tooltip("Cells that come this near to a visible pixel stay");
+}
+
+std::string islands_text(const Binding& binding) {
+    const int lone = lone_islands(binding);
+    if (binding.islands.count < 2) return {};
+    std::string text = fmt::format("{} loose parts", binding.islands.count);
+    if (lone == 1) text += "; one has no probe and follows the nearest";
+    if (lone > 1) text += fmt::format("; {} have no probe and follow the nearest", lone);
+    return text + ".";
+}
+
+/// What the weights keep to.
+void limit_rows(App& app) {
+    Document& document = app.editor.document;
+    const WeightScheme& scheme = *find_weight_scheme(document.weights.scheme);
+    const float width = (ImGui::GetContentRegionAvail().x - app.px(68) - app.px(8)) / 2;
+    row_label(app, "Limits", 68);
+    number_field(app, "##falloff", document.weights.falloff,
+                 document.weights.falloff > 0 ? "× reach" : "no falloff", width, 0.02, 0, max_falloff);
+    is_step(app, "Falloff limit");
+    tooltip("How many reaches away a probe's weight fades to nothing; 0: nowhere");
+    ImGui::SameLine(0, app.px(8));
+    const auto text = [](int most) {
+        return most == 0 ? std::string("All probes") : fmt::format("{} probes", most);
+    };
+    if (begin_combo(app, "##most", text(document.weights.most).c_str(), width)) {
+        for (const int most : {0, 4, 8})
+            if (ImGui::Selectable(text(most).c_str(), most == document.weights.most)) {
+                document.weights.most = most;
+                edit_at_once(app, "Probes per vertex");
+            }
+        ImGui::EndCombo();
+    }
+    tooltip("The heaviest probes that a vertex may follow");
+    if (!scheme.has_exponent) return;
+    row_label(app, "Exponent", 68);
+    number_field(app, "##exponent", document.weights.exponent, "", ImGui::GetContentRegionAvail().x, 0.01,
+                 min_exponent, max_exponent);
+    is_step(app, "Exponent");
+    tooltip("How quickly weights fall with distance; 2 is usual");
 }
 
 void draw_deformation(App& app) {
-    ImGui::Dummy({0, app.px(4)});
-    ImGui::Separator();
-    ImGui::Dummy({0, app.px(4)});
+    begin_section_gap(app);
     if (!section(app, "deformation", "Deformation", app.deformation_open)) return;
     method_combo(app, "Blend", app.editor.document.blend, blend_methods(), "Blend");
-    method_combo(app, "Weights", app.editor.document.weights, weight_schemes(), "Weights");
+    method_combo(app, "Weights", app.editor.document.weights.scheme, weight_schemes(), "Weights");
+    limit_rows(app);
     mesh_slider(app);
+    outline_rows(app);
+    if (!app.editor.deformation.binding) return;
+    const std::string islands = islands_text(*app.editor.deformation.binding);
+    if (islands.empty()) return;
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextDisabled("%s", islands.c_str());
+    ImGui::PopTextWrapPos();
 }
 
 }  // namespace
@@ -235,8 +309,12 @@ void draw_panel(App& app) {
                      ImGuiWindowFlags_NoNav);
     ImGui::PopStyleVar(2);
     draw_probes(app);
-    draw_chosen_probe(app);
+    if (is_painting_tool(app.editor))
+        draw_brush_section(app);
+    else
+        draw_chosen_probe(app);
     draw_deformation(app);
+    draw_weights_section(app);
     // Leaving a field makes what it did a step, however it was left.
     if (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field &&
         ImGui::GetActiveID() != app.field)

@@ -130,7 +130,11 @@ bool strip_button(App& app, const char* id, const char* symbol, float y, bool on
 }
 
 const char* tool_icon(std::string_view name) {
-    return name == "select" ? icon::select : name == "add" ? icon::add : icon::zoom;
+    return name == "select"  ? icon::select
+           : name == "add"   ? icon::add
+           : name == "brush" ? icon::brush
+           : name == "pin"   ? icon::pin
+                             : icon::zoom;
 }
 
 }  // namespace
@@ -144,18 +148,22 @@ void draw_tool_strip(App& app) {
         const std::string tip = fmt::format("{} ({})", tool.label, tool.key);
         if (strip_button(app, std::string(tool.name).c_str(), tool_icon(tool.name), y,
                          app.editor.tool == &tool, false, tip))
-            app.editor.tool = &tool;
+            choose_tool(app.editor, tool);
         y += app.px(44);
     }
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddLine({app.px(10), top + y + app.px(4)}, {app.px(38), top + y + app.px(4)}, app.theme.line);
     y += app.px(14);
-    for (const auto& [label, symbol] : {std::pair{"Show probes", icon::eye}, {"Show mesh", icon::grid}}) {
+    for (const auto& [label, symbol] : {std::pair{"Show probes", icon::eye},
+                                        {"Show mesh", icon::grid},
+                                        {"Show the chosen probe's", icon::palette}}) {
         const Command& command = find_command(label);
         const bool on = command.on(app.editor);
         const char* shown = !on && command.label == "Show probes" ? icon::eye_off : symbol;
-        if (strip_button(app, label, shown, y, on, true,
-                         fmt::format("{} ({})", label, to_text(command.shortcut))))
+        if (strip_button(
+                app, label, shown, y, on, true,
+                fmt::format("{} ({})", symbol == icon::palette ? "Show the chosen probe's weights" : label,
+                            to_text(command.shortcut))))
             run(app.editor, command);
         y += app.px(40);
     }
@@ -179,6 +187,8 @@ std::string facts(const App& app) {
     std::string text =
         fmt::format("{} × {} · {} vertices · deform {:.2f} ms · {}", image.width, image.height,
                     grouped(editor.deformation.now.size()), app.deform_milliseconds, app.renderer_label);
+    if (app.binding_job && ImGui::GetTime() - app.binding_job->since > 0.1)
+        text = "working out the weights… · " + text;
     if (editor.deformation.cancelled > 0)
         text = fmt::format("weights cancel at {} vertices · {}", grouped(editor.deformation.cancelled), text);
     return text;
@@ -191,11 +201,11 @@ void draw_pixel(App& app, float x, float y, ImDrawList* list) {
     const glm::dvec2 point = to_image(editor.view, *editor.pointer);
     const std::string place = fmt::format("{:.0f}, {:.0f} px", std::floor(point.x), std::floor(point.y));
     list->AddText({x, y}, app.theme.muted, place.c_str());
-    const auto pose = pose_at(editor.deformation, point);
-    if (!pose) return;
+    if (!app.under) return;
+    const glm::dvec2 rest = rest_point(mesh_of(editor.deformation), *app.under);
     const Image& image = editor.document.picture->image;
     const auto within = [](double v, int size) { return std::clamp(int(std::floor(v)), 0, size - 1); };
-    const auto rgba = pixel(image, within(pose->rest.x, image.width), within(pose->rest.y, image.height));
+    const auto rgba = pixel(image, within(rest.x, image.width), within(rest.y, image.height));
     const int shift = image.bits() - 8;
     x += app.px(96);
     const float middle = y + ImGui::GetFontSize() / 2;

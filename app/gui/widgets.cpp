@@ -91,6 +91,44 @@ void row_label(App& app, const char* text, float width) {
     ImGui::SetCursorPos({at.x + app.px(width), at.y});
 }
 
+bool slim_slider(App& app, const char* id, double& part, float width) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float height = app.px(look::field);
+    ImGui::InvisibleButton(id, {width, height});
+    const bool held = ImGui::IsItemActive();
+    if (held) part = std::clamp(double((ImGui::GetIO().MousePos.x - at.x) / width), 0.0, 1.0);
+    const float middle = at.y + height / 2, grip = at.x + float(part) * width;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled({at.x, middle - app.px(2)}, {at.x + width, middle + app.px(2)}, app.theme.line,
+                        app.px(2));
+    list->AddRectFilled({at.x, middle - app.px(2)}, {grip, middle + app.px(2)}, app.theme.accent, app.px(2));
+    list->AddCircleFilled({grip, middle}, app.px(7), IM_COL32_WHITE, 24);
+    list->AddCircle({grip, middle}, app.px(7), app.theme.line, 24);
+    return held;
+}
+
+bool slider_field(App& app, const char* id, double& value, const char* unit, float width, double least,
+                  double most) {
+    double part = (value - least) / (most - least);
+    const float track = width - app.px(48);
+    const bool changed = slim_slider(app, id, part, track);
+    if (changed) value = least + part * (most - least);
+    const std::string text =
+        most > 10 ? fmt::format("{:.0f} {}", value, unit) : fmt::format("{:.2f}{}", value, unit);
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    const float text_width = ImGui::CalcTextSize(text.c_str()).x;
+    ImGui::GetWindowDrawList()->AddText(
+        {std::round(from.x + width - text_width), std::round((from.y + to.y - ImGui::GetFontSize()) / 2)},
+        app.theme.text, text.c_str());
+    return changed;
+}
+
+void begin_section_gap(App& app) {
+    ImGui::Dummy({0, app.px(4)});
+    ImGui::Separator();
+    ImGui::Dummy({0, app.px(4)});
+}
+
 bool begin_combo(App& app, const char* id, const char* shown, float width) {
     ImGui::SetNextItemWidth(width);
     ImGui::PushStyleColor(ImGuiCol_FrameBg, app.theme.raised);

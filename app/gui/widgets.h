@@ -32,6 +32,17 @@ void row_label(App& app, const char* text, float width);
 bool number_field(App& app, const char* id, double& value, const char* unit, float width, double step,
                   double least, double most);
 
+/// A slim slider with a round grip over [least, most] and its value in text at the right. Returns whether it
+/// changed.
+bool slider_field(App& app, const char* id, double& value, const char* unit, float width, double least,
+                  double most);
+
+/// The slider's own part: a track with a grip at `part` in [0, 1]. Returns whether the hand set it.
+bool slim_slider(App& app, const char* id, double& part, float width);
+
+/// The line between two sections of the panel.
+void begin_section_gap(App& app);
+
 /// ImGui::BeginCombo with the program's chevron.
 bool begin_combo(App& app, const char* id, const char* shown, float width);
 

@@ -14,6 +14,7 @@
 #include "editor/commands.h"
 #include "gui/actions.h"
 #include "gui/app.h"
+#include "gui/brush_panel.h"
 #include "gui/canvas.h"
 #include "gui/dialogs.h"
 #include "gui/panels.h"
@@ -341,13 +342,15 @@ void draw_frame(App& app) {
     ImGui::PopStyleVar();
     draw_file_dialog(app);
     draw_export_dialog(app);
+    draw_levels_dialog(app);
     draw_questions(app);
     draw_about(app);
     draw_progress(app);
     draw_messages(app);
     app.modal = is_busy(app) ||
                 ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel) ||
-                app.file_dialog.open || app.export_dialog.open || app.about_open || !app.questions.empty();
+                app.file_dialog.open || app.export_dialog.open || app.levels_dialog.open || app.about_open ||
+                !app.questions.empty();
     ImGui::Render();
     int width = 0, height = 0;
     glfwGetFramebufferSize(app.window, &width, &height);
@@ -395,6 +398,7 @@ int run_window(const std::string& path) {
     app.window = window;
     app.scale = scale;
     glfwSetWindowUserPointer(window, &app);
+    app.editor.binds_elsewhere = true;
     app.renderer = std::make_unique<Renderer>();
     app.renderer_label = renderer_name();
     const Toolkit toolkit(window);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,6 +25,9 @@ Image decode_psd(Bytes bytes);  ///< the merged picture
 Image decode_pnm(Bytes bytes);
 
 std::vector<std::byte> encode_png(const Image& image, const EncodeOptions& options);
+/// 16-bit grey (1 channel) or grey with alpha (2). samples: height x width x channels
+std::vector<std::byte> encode_png_samples(int width, int height, int channels,
+                                          std::span<const std::uint16_t> samples);
 std::vector<std::byte> encode_jpeg(const Image& image, const EncodeOptions& options);
 std::vector<std::byte> encode_bmp(const Image& image, const EncodeOptions& options);
 std::vector<std::byte> encode_tga(const Image& image, const EncodeOptions& options);

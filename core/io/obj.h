@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "model/document.h"
+#include "model/deformation.h"
 
 namespace probewarp {
 
-/// Vertices in grid order as image pixels with z = 0, texture coordinates with v up, triangles; nine
+/// Vertices in the mesh's order as image pixels with z = 0, texture coordinates with v up, triangles; nine
 /// significant digits, so that every float comes back.
 std::string encode_obj(const Document& document, const Deformation& deformation);
 

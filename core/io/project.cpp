@@ -12,6 +12,7 @@
 
 #include "io/file.h"
 #include "io/image_file.h"
+#include "io/paint_file.h"
 #include "io/printable.h"
 #include "io/zip_archive.h"
 
@@ -24,9 +25,11 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t max_json_bytes = std::size_t{16} << 20;
 constexpr int max_json_depth = 8;
 constexpr std::size_t max_probes = 10000;
-constexpr std::size_t max_json_objects = max_probes + 8;    // a probe is one, the project a few
-constexpr std::size_t max_json_lists = 2 * max_probes + 8;  // rest and now of each
-constexpr std::size_t max_json_fields = 64;                 // of one object
+constexpr std::size_t max_json_objects = 2 * max_probes + 8;  // a probe and its paint, the project a few
+constexpr std::size_t max_json_lists = 3 * max_probes + 8;    // rest, now and the paint's extent of each
+/// Of all paint together, so that a small file cannot ask for all memory or time: 512 MiB of tiles.
+constexpr std::size_t max_painted_texels = std::size_t{1} << 27, max_paint_texels = std::size_t{1} << 30;
+constexpr std::size_t max_json_fields = 64;  // of one object
 
 std::vector<std::byte> to_bytes(std::string_view text) {
     const auto bytes = std::as_bytes(std::span(text));
@@ -110,12 +113,13 @@ class Fields {
             throw wrong(field, fmt::format("a line of text of at most {} bytes", longest));
         return text;
     }
-    glm::dvec2 point(const char* field) {
+    glm::dvec2 point(const char* field, double least = -max_probe_coordinate,
+                     double most = max_probe_coordinate) {
         const Json& value = take(field);
         if (!value.is_array() || value.size() != 2) throw wrong(field, "two numbers");
-        return {checked(value[0], field, -max_probe_coordinate, max_probe_coordinate),
-                checked(value[1], field, -max_probe_coordinate, max_probe_coordinate)};
+        return {checked(value[0], field, least, most), checked(value[1], field, least, most)};
     }
+    std::string place() const { return place_; }
     void finish() const {
         for (const auto& [key, value] : json_.items())
             if (!taken_.contains(key))
@@ -146,6 +150,32 @@ Colour colour_from(Fields& fields) {
     return {std::uint8_t(value >> 16), std::uint8_t(value >> 8), std::uint8_t(value)};
 }
 
+/// Where a map of paint is in the archive.
+struct PaintMember {
+    std::string file;
+    glm::dvec2 extent{0};
+};
+
+Json paint_json(const PaintPtr& paint, const std::string& file) {
+    if (!paint) return nullptr;
+    return {{"file", file}, {"extent", {paint->extent.x, paint->extent.y}}};
+}
+
+/// Empty where the field is null.
+std::optional<PaintMember> paint_from(Fields& fields, const char* field) {
+    const Json& json = fields.take(field);
+    if (json.is_null()) return {};
+    Fields paint(json, fields.place().empty() ? field : fields.place() + "." + field);
+    PaintMember member;
+    member.file = paint.text("file", 80);
+    member.extent = paint.point("extent", 1e-6, 1e6);
+    paint.finish();
+    return member;
+}
+
+constexpr const char* stiffness_file = "stiffness.png";
+std::string paint_file(const Probe& probe) { return fmt::format("paint/{}.png", probe.id); }
+
 Json to_json(const Probe& probe) {
     return {{"id", probe.id},
             {"name", probe.name},
@@ -155,10 +185,12 @@ Json to_json(const Probe& probe) {
             {"angle_radians", probe.angle},
             {"radius", probe.radius},
             {"locked", probe.locked},
-            {"visible", probe.visible}};
+            {"visible", probe.visible},
+            {"paint", paint_json(probe.paint, paint_file(probe))}};
 }
 
-Probe probe_from(const Json& json, const std::string& place) {
+/// `paint` becomes the place of the probe's paint.
+Probe probe_from(const Json& json, const std::string& place, int format, std::optional<PaintMember>& paint) {
     Fields fields(json, place);
     Probe probe;
     probe.id = fields.whole("id", 1, max_probe_id);
@@ -170,6 +202,7 @@ Probe probe_from(const Json& json, const std::string& place) {
     probe.radius = fields.number("radius", min_probe_radius, max_probe_coordinate);
     probe.locked = fields.yes("locked");
     probe.visible = fields.yes("visible");
+    if (format > 1) paint = paint_from(fields, "paint");
     fields.finish();
     return probe;
 }
@@ -186,39 +219,72 @@ std::string image_member(const Picture& picture) {
     return fmt::format("image{}", find_image_format(picture.format)->extensions[0]);
 }
 
-/// Everything but the picture, and the name of its member and of the file it came from.
+/// Everything but the picture and the paint, and the names of their members and of the file the picture came
+/// from.
 struct Parsed {
     Document document;
     std::string image_file, image_name;
+    std::vector<std::optional<PaintMember>> paint;  ///< #probes
+    std::optional<PaintMember> stiffness;
 };
+
+MeshSettings mesh_from(const Json& json, int format) {
+    Fields fields(json, "mesh");
+    MeshSettings mesh;
+    mesh.cells = fields.whole("cells", min_cells, max_cells);
+    mesh.from_alpha = format > 1 && fields.yes("from_alpha");  // format 1 had the whole grid
+    if (format > 1) {
+        mesh.threshold = fields.whole("threshold", 0, 254);
+        mesh.margin = fields.number("margin", 0, max_mesh_margin);
+    }
+    fields.finish();
+    return mesh;
+}
+
+WeightSettings weights_from(Fields& fields, int format) {
+    WeightSettings weights;
+    if (format == 1) {
+        weights.scheme = fields.text("weights", 80);
+        if (!find_weight_scheme(weights.scheme))
+            throw fields.wrong("weights", "a weight scheme that is known");
+        return weights;
+    }
+    Fields inner(fields.take("weights"), "weights");
+    weights.scheme = inner.text("scheme", 80);
+    if (!find_weight_scheme(weights.scheme)) throw inner.wrong("scheme", "a weight scheme that is known");
+    weights.exponent = inner.number("exponent", min_exponent, max_exponent);
+    weights.falloff = inner.number("falloff", 0, max_falloff);
+    weights.most = inner.whole("most", 0, int(max_probes));
+    inner.finish();
+    return weights;
+}
 
 Parsed parse_project(std::span<const std::byte> bytes) {
     const Json json = parse(bytes);
     Fields fields(json, "");
     const Json& format = fields.take("format");
-    if (!format.is_number_integer() || format != project_format)
-        throw Error(fmt::format("project.json has format {}; this version reads format {}",
+    if (!format.is_number_integer() || format < 1 || format > project_format)
+        throw Error(fmt::format("project.json has format {}; this version reads formats 1 to {}",
                                 format.is_number_integer() ? format.dump() : "unknown", project_format));
+    const int version = format.get<int>();
     Parsed parsed;
     Fields image(fields.take("image"), "image");
     parsed.image_file = image.text("file", 80);
     parsed.image_name = image.text("name", 1000);
     image.finish();
-    Fields mesh(fields.take("mesh"), "mesh");
-    parsed.document.cells = mesh.whole("cells", min_cells, max_cells);
-    mesh.finish();
-    parsed.document.weights = fields.text("weights", 80);
-    if (!find_weight_scheme(parsed.document.weights))
-        throw fields.wrong("weights", "a weight scheme that is known");
+    parsed.document.mesh = mesh_from(fields.take("mesh"), version);
+    parsed.document.weights = weights_from(fields, version);
     parsed.document.blend = fields.text("blend", 80);
     if (!find_blend_method(parsed.document.blend))
         throw fields.wrong("blend", "a blend method that is known");
+    if (version > 1) parsed.stiffness = paint_from(fields, "stiffness");
     const Json& probes = fields.take("probes");
     if (!probes.is_array() || probes.size() > max_probes)
         throw fields.wrong("probes", fmt::format("a list of at most {} probes", max_probes));
     std::set<int> ids;
     for (std::size_t i = 0; i < probes.size(); ++i) {
-        parsed.document.probes.push_back(probe_from(probes[i], fmt::format("probes[{}]", i)));
+        parsed.document.probes.push_back(
+            probe_from(probes[i], fmt::format("probes[{}]", i), version, parsed.paint.emplace_back()));
         if (!ids.insert(parsed.document.probes.back().id).second)
             throw Error(fmt::format("project.json: probes[{}].id stands twice; expected ids to differ", i));
     }
@@ -240,8 +306,28 @@ Document decode(std::vector<std::byte> bytes) {
     };
     Parsed parsed = parse_project(find("project.json")->bytes);
     auto image = find(parsed.image_file);
+    std::set<std::string> known{"mimetype", "project.json", parsed.image_file};
+    std::size_t painted = 0, texels = 0;
+    const auto take_paint = [&](const std::optional<PaintMember>& member) -> PaintPtr {
+        if (!member) return nullptr;
+        if (!known.insert(member->file).second)
+            throw Error(fmt::format("project.json names {} twice; expected a file for each", member->file));
+        try {
+            PaintMap map = decode_paint(find(member->file)->bytes, member->extent);
+            texels += std::size_t(map.width) * std::size_t(map.height);
+            painted += painted_texels(map);
+            if (texels > max_paint_texels || painted > max_painted_texels)
+                throw Error("more paint than fits; expected at most 134 million painted texels in all");
+            return std::make_shared<const PaintMap>(std::move(map));
+        } catch (const Error& error) {
+            throw Error(fmt::format("{}: {}", member->file, error.what()));
+        }
+    };
+    for (std::size_t i = 0; i < parsed.paint.size(); ++i)
+        parsed.document.probes[i].paint = take_paint(parsed.paint[i]);
+    parsed.document.stiffness = take_paint(parsed.stiffness);
     for (const ZipMember& member : members)
-        if (member.name != "mimetype" && member.name != "project.json" && member.name != parsed.image_file)
+        if (!known.contains(member.name))
             throw Error(fmt::format(
                 "has a member {} that this version does not know; expected a project of this version",
                 member.name));
@@ -260,17 +346,37 @@ std::vector<std::byte> encode_project(const Document& document) {
     const Picture& picture = *document.picture;
     const Json json{{"format", project_format},
                     {"image", {{"file", image_member(picture)}, {"name", one_line(picture.name)}}},
-                    {"mesh", {{"cells", document.cells}}},
-                    {"weights", document.weights},
+                    {"mesh",
+                     {{"cells", document.mesh.cells},
+                      {"from_alpha", document.mesh.from_alpha},
+                      {"threshold", document.mesh.threshold},
+                      {"margin", document.mesh.margin}}},
+                    {"weights",
+                     {{"scheme", document.weights.scheme},
+                      {"exponent", document.weights.exponent},
+                      {"falloff", document.weights.falloff},
+                      {"most", document.weights.most}}},
                     {"blend", document.blend},
+                    {"stiffness", paint_json(document.stiffness, stiffness_file)},
                     {"probes", std::move(probes)}};
     const std::vector<std::byte> text =
         to_bytes(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     parse_project(text);  // a save that would not open again must fail now, while the document is still there
     // The picture is stored as it is: its own format has compressed it already, or it is quick to write.
-    const ZipMember members[] = {{"mimetype", to_bytes(project_mimetype), true},
-                                 {"project.json", text, false},
-                                 {image_member(picture), picture.original, true}};
+    std::vector<ZipMember> members{{"mimetype", to_bytes(project_mimetype), true},
+                                   {"project.json", text, false},
+                                   {image_member(picture), picture.original, true}};
+    std::size_t painted = 0, texels = 0;
+    const auto add_paint = [&](const PaintPtr& paint, const std::string& file) {
+        if (!paint) return;
+        texels += std::size_t(paint->width) * std::size_t(paint->height);
+        painted += painted_texels(*paint);
+        members.push_back({file, encode_paint(*paint), true});
+    };
+    for (const Probe& probe : document.probes) add_paint(probe.paint, paint_file(probe));
+    add_paint(document.stiffness, stiffness_file);
+    if (texels > max_paint_texels || painted > max_painted_texels)
+        throw Error("there is more paint than a project holds; clear what is not needed");
     return write_zip(members);
 }
 

@@ -1,5 +1,5 @@
-// Project files, name.probewarp: a ZIP of `mimetype`, `project.json` and the picture's own bytes, so that it
-// opens wherever it is moved. docs/project-format.md describes it.
+// Project files, name.probewarp: a ZIP of `mimetype`, `project.json`, the picture's own bytes and the paint,
+// so that it opens wherever it is moved. docs/project-format.md describes it.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace probewarp {
 
-inline constexpr int project_format = 1;
+inline constexpr int project_format = 2;  ///< what is written; 1 is read too
 inline constexpr const char* project_extension = ".probewarp";
 inline constexpr const char* project_mimetype = "application/x-probewarp";
 

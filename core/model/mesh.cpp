@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <numeric>
 
 namespace probewarp {
 
@@ -12,60 +15,242 @@ std::array<int, 2> grid_size(int width, int height, int cells) {
     return width >= height ? std::array{cells, across} : std::array{across, cells};
 }
 
-Mesh grid_mesh(int width, int height, int cells) {
-    assert(width > 0 && height > 0 && cells >= min_cells && cells <= max_cells);
-    Mesh mesh;
-    const auto [columns, rows] = grid_size(width, height, cells);
-    mesh.columns = columns;
-    mesh.rows = rows;
-    mesh.rest.reserve(std::size_t(columns + 1) * std::size_t(rows + 1));
-    for (int y = 0; y <= rows; ++y)
-        for (int x = 0; x <= columns; ++x)
-            mesh.rest.emplace_back(double(width) * x / columns, double(height) * y / rows);
-    mesh.triangles.reserve(std::size_t(columns) * std::size_t(rows) * 6);
-    for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < columns; ++x) {
-            const auto top_left = std::uint32_t(y * (columns + 1) + x), top_right = top_left + 1;
-            const auto bottom_left = top_left + std::uint32_t(columns + 1), bottom_right = bottom_left + 1;
-            for (std::uint32_t corner :
-                 {top_left, bottom_right, top_right, top_left, bottom_left, bottom_right})
-                mesh.triangles.push_back(corner);
+namespace {
+
+/// The cells [first, last] along one side that come within `margin` pixels of pixel `at`: one that only
+/// touches does not. Multiplied before divided, so that whole quotients are exact.
+std::array<int, 2> cells_near(int at, double margin, int cells, int size) {
+    const int first = int(std::floor((at - margin) * cells / size));
+    const int last = int(std::ceil((at + 1 + margin) * cells / size)) - 1;
+    return {std::clamp(first, 0, cells - 1), std::clamp(last, 0, cells - 1)};
+}
+
+template <class Sample>
+void mark_visible(const std::vector<Sample>& rgba, const Image& image, const MeshSettings& settings,
+                  int columns, int rows, std::vector<std::uint8_t>& kept) {
+    const int full = std::numeric_limits<Sample>::max();
+    std::vector<std::array<int, 2>> across;
+    for (int x = 0; x < image.width; ++x)
+        across.push_back(cells_near(x, settings.margin, columns, image.width));
+    std::vector<std::uint8_t> in_row(static_cast<std::size_t>(columns));
+    for (int y = 0; y < image.height; ++y) {
+        std::fill(in_row.begin(), in_row.end(), std::uint8_t{0});
+        const Sample* alpha = rgba.data() + std::size_t(y) * std::size_t(image.width) * 4 + 3;
+        int marked = -1;  // the last column that is
+        for (int x = 0; x < image.width; ++x, alpha += 4) {
+            if (int(*alpha) * 255 <= settings.threshold * full) continue;
+            const auto [from, to] = across[std::size_t(x)];
+            for (int c = std::max(from, marked + 1); c <= to; ++c) in_row[std::size_t(c)] = 1;
+            marked = std::max(marked, to);
         }
-    return mesh;
+        if (marked < 0) continue;
+        const auto [from, to] = cells_near(y, settings.margin, rows, image.height);
+        for (int r = from; r <= to; ++r)
+            for (int c = 0; c < columns; ++c)
+                kept[std::size_t(r) * std::size_t(columns) + std::size_t(c)] |= in_row[std::size_t(c)];
+    }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> visible_cells(const Image& image, const MeshSettings& settings) {
+    const auto [columns, rows] = grid_size(image.width, image.height, settings.cells);
+    const std::size_t cells = std::size_t(columns) * std::size_t(rows);
+    if (!settings.from_alpha || !has_alpha(image)) return std::vector<std::uint8_t>(cells, 1);
+    std::vector<std::uint8_t> kept(cells, 0);
+    std::visit(
+        [&, c = columns, r = rows](const auto& rgba) { mark_visible(rgba, image, settings, c, r, kept); },
+        image.rgba);
+    if (std::find(kept.begin(), kept.end(), 1) == kept.end())
+        std::fill(kept.begin(), kept.end(), std::uint8_t{1});
+    return kept;
 }
 
 namespace {
 
 double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 
-/// Barycentric coordinates of `point`, where it lies in the triangle or on its edge.
+/// Barycentric coordinates of `point`; empty where the triangle has no area.
 std::optional<glm::dvec3> barycentric(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 point) {
     const double area = cross(b - a, c - a);
     if (area == 0) return {};
     const double u = cross(b - point, c - point) / area, v = cross(c - point, a - point) / area;
-    const double w = 1 - u - v;
-    constexpr double edge = -1e-9;  // a point on a shared edge belongs to either, never to none
-    if (u < edge || v < edge || w < edge) return {};
-    return glm::dvec3{u, v, w};
+    return glm::dvec3{u, v, 1 - u - v};
+}
+
+double least(glm::dvec3 v) { return std::min({v.x, v.y, v.z}); }
+
+/// The cell at `point` of the picture's plane; empty beside the picture.
+std::optional<std::size_t> cell_at(const Mesh& mesh, glm::dvec2 point) {
+    if (!(point.x >= 0 && point.y >= 0 && point.x <= mesh.size.x && point.y <= mesh.size.y)) return {};
+    const int column = std::min(int(point.x / mesh.size.x * mesh.columns), mesh.columns - 1);
+    const int row = std::min(int(point.y / mesh.size.y * mesh.rows), mesh.rows - 1);
+    return std::size_t(row) * std::size_t(mesh.columns) + std::size_t(column);
+}
+
+/// The grid's vertices that a kept cell has, row by row.
+void add_grid_vertices(Mesh& mesh, std::span<const std::uint8_t> kept) {
+    const std::size_t columns = std::size_t(mesh.columns), across = columns + 1;
+    mesh.grid.assign(across * (std::size_t(mesh.rows) + 1), no_vertex);
+    for (std::size_t cell = 0; cell < kept.size(); ++cell) {
+        if (!kept[cell]) continue;
+        const std::size_t corner = cell / columns * across + cell % columns;
+        for (const std::size_t at : {corner, corner + 1, corner + across, corner + across + 1})
+            mesh.grid[at] = 0;
+    }
+    for (std::size_t at = 0; at < mesh.grid.size(); ++at) {
+        if (mesh.grid[at] == no_vertex) continue;
+        mesh.grid[at] = std::uint32_t(mesh.rest.size());
+        mesh.rest.emplace_back(mesh.size.x * double(at % across) / mesh.columns,
+                               mesh.size.y * double(at / across) / mesh.rows);
+    }
+}
+
+using Corners = std::array<std::uint32_t, 3>;
+
+/// Cuts the triangle of `cell` that holds `point` into three; returns the vertex there. Vertices are floats,
+/// so a point on the cell's edge may lie a hair outside of it: the nearest triangle is the one.
+std::uint32_t insert(Mesh& mesh, std::vector<Corners>& cell, glm::dvec2 point) {
+    constexpr double on_vertex = 1 - 1e-4;
+    Corners* nearest = nullptr;
+    glm::dvec3 at{0};
+    for (Corners& triangle : cell) {
+        const auto [a, b, c] = triangle;
+        const auto here = barycentric(mesh.rest[a], mesh.rest[b], mesh.rest[c], point);
+        if (!here || (nearest && least(*here) <= least(at))) continue;
+        nearest = &triangle;
+        at = *here;
+    }
+    const auto [a, b, c] = *nearest;
+    if (at.x >= on_vertex) return a;
+    if (at.y >= on_vertex) return b;
+    if (at.z >= on_vertex) return c;
+    const auto vertex = std::uint32_t(mesh.rest.size());
+    mesh.rest.emplace_back(point);
+    *nearest = {a, b, vertex};
+    cell.push_back({b, c, vertex});
+    cell.push_back({c, a, vertex});
+    return vertex;
+}
+
+}  // namespace
+
+Mesh probe_mesh(const Image& image, int cells, std::span<const std::uint8_t> kept,
+                std::span<const glm::dvec2> rests) {
+    assert(image.width > 0 && image.height > 0 && cells >= min_cells && cells <= max_cells);
+    Mesh mesh;
+    mesh.size = {image.width, image.height};
+    const auto [columns, rows] = grid_size(image.width, image.height, cells);
+    mesh.columns = columns;
+    mesh.rows = rows;
+    assert(kept.size() == std::size_t(columns) * std::size_t(rows));
+    add_grid_vertices(mesh, kept);
+
+    // The probes by their cells, in the probes' order within one.
+    std::vector<std::pair<std::size_t, std::size_t>> by_cell;
+    for (std::size_t i = 0; i < rests.size(); ++i)
+        if (const auto cell = cell_at(mesh, rests[i]); cell && kept[*cell]) by_cell.emplace_back(*cell, i);
+    std::sort(by_cell.begin(), by_cell.end());
+    mesh.anchors.assign(rests.size(), no_vertex);
+    mesh.first_triangle.reserve(kept.size() + 1);
+    mesh.triangles.reserve(kept.size() * 6 + rests.size() * 6);
+    auto next = by_cell.begin();
+    std::vector<Corners> cut;
+    const std::size_t across = std::size_t(columns) + 1;
+    for (std::size_t cell = 0; cell < kept.size(); ++cell) {
+        mesh.first_triangle.push_back(std::uint32_t(mesh.triangles.size() / 3));
+        if (!kept[cell]) continue;
+        const std::size_t corner = cell / std::size_t(columns) * across + cell % std::size_t(columns);
+        const std::uint32_t top_left = mesh.grid[corner], top_right = mesh.grid[corner + 1];
+        const std::uint32_t bottom_left = mesh.grid[corner + across],
+                            bottom_right = mesh.grid[corner + across + 1];
+        cut.assign({{top_left, bottom_right, top_right}, {top_left, bottom_left, bottom_right}});
+        for (; next != by_cell.end() && next->first == cell; ++next)
+            mesh.anchors[next->second] = insert(mesh, cut, rests[next->second]);
+        for (const Corners& triangle : cut)
+            mesh.triangles.insert(mesh.triangles.end(), triangle.begin(), triangle.end());
+    }
+    mesh.first_triangle.push_back(std::uint32_t(mesh.triangles.size() / 3));
+    return mesh;
+}
+
+Mesh grid_mesh(int width, int height, int cells) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    const auto [columns, rows] = grid_size(width, height, cells);
+    const std::vector<std::uint8_t> all(std::size_t(columns) * std::size_t(rows), 1);
+    return probe_mesh(image, cells, all, {});
+}
+
+namespace {
+
+/// Where `point` is seen from a triangle, inside it or not; empty where the triangle has no area.
+std::optional<MeshPoint> seen_from(const Mesh& mesh, std::span<const glm::vec2> vertices,
+                                   std::size_t triangle, glm::dvec2 point) {
+    const auto* t = mesh.triangles.data() + 3 * triangle;
+    const auto at = barycentric(vertices[t[0]], vertices[t[1]], vertices[t[2]], point);
+    if (!at) return {};
+    return MeshPoint{{t[0], t[1], t[2]}, *at, std::uint32_t(triangle)};
 }
 
 }  // namespace
 
 std::optional<MeshPoint> locate(const Mesh& mesh, std::span<const glm::vec2> vertices, glm::dvec2 point) {
     assert(vertices.size() == mesh.rest.size());
-    for (std::size_t t = mesh.triangles.size(); t > 0; t -= 3) {
-        const std::array corners{mesh.triangles[t - 3], mesh.triangles[t - 2], mesh.triangles[t - 1]};
-        if (const auto at =
-                barycentric(vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], point))
-            return MeshPoint{corners, *at};
-    }
+    constexpr double edge = -1e-9;  // a point on a shared edge belongs to either, never to none
+    for (std::size_t t = mesh.triangles.size() / 3; t-- > 0;)
+        if (auto at = seen_from(mesh, vertices, t, point); at && least(at->barycentric) >= edge) return at;
     return {};
+}
+
+std::optional<MeshPoint> locate_at_rest(const Mesh& mesh, glm::dvec2 point) {
+    const auto cell = cell_at(mesh, point);
+    if (!cell) return {};
+    // As for insert, the nearest triangle is the one; its share of the corners is never negative.
+    std::optional<MeshPoint> nearest;
+    for (std::size_t t = mesh.first_triangle[*cell]; t < mesh.first_triangle[*cell + 1]; ++t)
+        if (const auto at = seen_from(mesh, mesh.rest, t, point);
+            at && (!nearest || least(at->barycentric) > least(nearest->barycentric)))
+            nearest = at;
+    if (nearest) {
+        const glm::dvec3 inside = glm::max(nearest->barycentric, glm::dvec3(0));
+        nearest->barycentric = inside / (inside.x + inside.y + inside.z);
+    }
+    return nearest;
+}
+
+std::span<const std::uint32_t> cell_corners(const Mesh& mesh, glm::dvec2 point) {
+    const auto cell = cell_at(mesh, point);
+    if (!cell) return {};
+    const std::size_t first = mesh.first_triangle[*cell], last = mesh.first_triangle[*cell + 1];
+    return std::span(mesh.triangles).subspan(3 * first, 3 * (last - first));
 }
 
 glm::dvec2 rest_point(const Mesh& mesh, const MeshPoint& at) {
     glm::dvec2 sum{0};
     for (int k = 0; k < 3; ++k) sum += at.barycentric[k] * glm::dvec2(mesh.rest[at.corners[std::size_t(k)]]);
     return sum;
+}
+
+Islands islands_of(const Mesh& mesh) {
+    // Union-find: each vertex points towards an earlier one of its island, the first to itself.
+    std::vector<std::uint32_t> towards(mesh.rest.size());
+    std::iota(towards.begin(), towards.end(), 0u);
+    const auto root = [&towards](std::uint32_t v) {
+        while (towards[v] != v) v = towards[v] = towards[towards[v]];
+        return v;
+    };
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
+        for (const std::size_t k : {i + 1, i + 2}) {
+            const std::uint32_t a = root(mesh.triangles[i]), b = root(mesh.triangles[k]);
+            towards[std::max(a, b)] = std::min(a, b);
+        }
+    Islands islands;
+    islands.of.resize(towards.size());
+    for (std::uint32_t v = 0; v < towards.size(); ++v)
+        islands.of[v] = towards[v] == v ? islands.count++ : islands.of[root(v)];
+    return islands;
 }
 
 }  // namespace probewarp

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "math/dual_complex.h"
+#include "model/paint.h"
 
 namespace probewarp {
 
@@ -31,8 +32,9 @@ struct Probe {
     glm::dvec2 now{0};    ///< image pixels: where it is now
     double angle = 0;     ///< radians, clockwise as seen, unwrapped: 4 pi is two turns
     double radius = 100;  ///< image pixels, > 0: how far it reaches
-    bool locked = false;  ///< cannot be moved by hand
+    bool locked = false;  ///< cannot be moved by hand, and painting others leaves its share alone
     bool visible = true;  ///< drawn on the canvas; a hidden probe still deforms
+    PaintPtr paint;       ///< over its automatic weights; null: none
 
     friend bool operator==(const Probe&, const Probe&) = default;
 };

@@ -3,30 +3,106 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 namespace probewarp {
 
-void inverse_distance_weights(std::span<const Probe> probes, glm::dvec2 vertex, std::span<float> weights) {
+namespace {
+
+glm::dvec2 in_radii(const Probe& probe, glm::dvec2 point) {
+    return (point - probe.rest) / probe.radius;  // before squaring, or tiny radii would give 0 / 0
+}
+
+double squared(glm::dvec2 d) { return d.x * d.x + d.y * d.y; }
+
+}  // namespace
+
+void inverse_distance_weights(std::span<const Probe> probes, double exponent, glm::dvec2 vertex,
+                              std::span<float> weights) {
     assert(weights.size() == probes.size());
-    // distance^2 / radius^2; the radius divides before squaring, or tiny radii would give 0 / 0.
-    const auto ratio = [vertex](const Probe& probe) {
-        const glm::dvec2 d = (vertex - probe.rest) / probe.radius;
-        return d.x * d.x + d.y * d.y;
-    };
-    // The probe that weighs most has the smallest ratio; dividing by it keeps every weight in [0, 1] however
-    // near the probe is.
-    double least = std::numeric_limits<double>::infinity();
-    for (const Probe& probe : probes) least = std::min(least, ratio(probe));
+    // The probe that weighs most has the smallest distance^2 / radius^2; dividing by it keeps every weight in
+    // [0, 1] however near the probe is.
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Probe& probe : probes) nearest = std::min(nearest, squared(in_radii(probe, vertex)));
     for (std::size_t i = 0; i < probes.size(); ++i) {
-        const double own = ratio(probes[i]);
-        weights[i] = own == least ? 1.0f : float(least / own);
+        const double own = squared(in_radii(probes[i], vertex));
+        const double ratio = own == nearest ? 1 : nearest / own;
+        weights[i] = float(exponent == 2 ? ratio : std::pow(ratio, exponent / 2));
     }
 }
 
+void gaussian_weights(std::span<const Probe> probes, glm::dvec2 vertex, std::span<float> weights) {
+    assert(weights.size() == probes.size());
+    // In logarithms, where far probes do not vanish all at once: log(1 / (e^x - 1)) = -x - log(1 - e^-x).
+    const auto logarithm = [vertex](const Probe& probe) {
+        const double x = squared(in_radii(probe, vertex));
+        return x > 0 ? -x - std::log(-std::expm1(-x)) : std::numeric_limits<double>::infinity();
+    };
+    double most = -std::numeric_limits<double>::infinity();
+    for (const Probe& probe : probes) most = std::max(most, logarithm(probe));
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        const double own = logarithm(probes[i]);
+        weights[i] = own == most ? 1.0f : float(std::exp(own - most));
+    }
+}
+
+namespace {
+
+void check_given_up(const WeightInput& input) {
+    if (input.given_up && *input.given_up) throw GivenUp();
+}
+
+/// A scheme that looks at one vertex at a time: at(vertex, row).
+template <class At>
+std::vector<float> table_by_vertex(const WeightInput& input, At at) {
+    const std::size_t probes = input.probes.size(), vertices = input.mesh.rest.size();
+    std::vector<float> table(vertices * probes);
+    for (std::size_t v = 0; v < vertices; ++v) {
+        if (v % 4096 == 0) check_given_up(input);
+        at(input.mesh.rest[v], std::span(table).subspan(v * probes, probes));
+    }
+    // A probe's own vertex is its rest rounded to floats.
+    for (std::size_t i = 0; i < probes; ++i) {
+        if (input.mesh.anchors[i] == no_vertex) continue;
+        float* row = table.data() + std::size_t(input.mesh.anchors[i]) * probes;
+        for (std::size_t k = 0; k < probes; ++k)
+            row[k] = input.mesh.anchors[k] == input.mesh.anchors[i] ? 1.0f : 0.0f;
+    }
+    return table;
+}
+
+std::vector<float> inverse_distance_table(const WeightInput& input) {
+    return table_by_vertex(input, [&input](glm::dvec2 vertex, std::span<float> row) {
+        inverse_distance_weights(input.probes, input.exponent, vertex, row);
+    });
+}
+
+std::vector<float> gaussian_table(const WeightInput& input) {
+    return table_by_vertex(input, [&input](glm::dvec2 vertex, std::span<float> row) {
+        gaussian_weights(input.probes, vertex, row);
+    });
+}
+
+}  // namespace
+
 std::span<const WeightScheme> weight_schemes() {
-    static constexpr std::array<WeightScheme, 1> schemes{
-        {{"inverse-distance", "Inverse distance", &inverse_distance_weights}}};
+    static constexpr std::array<WeightScheme, 5> schemes{
+        {{"inverse-distance", "Inverse distance",
+          "Soft everywhere: for faces, cloth and pictures without an outline.", true, false,
+          &inverse_distance_table},
+         {"gaussian", "Gaussian of the reach",
+          "A probe rules within its reach and fades quickly beyond: for local retouching.", false, false,
+          &gaussian_table},
+         {"geodesic", "Geodesic, in the shape",
+          "Like inverse distance, but measured along the shape: limbs stay apart.", true, true,
+          &geodesic_table},
+         {"harmonic", "Harmonic, in the shape",
+          "Spreads evenly between the probes and stops at the outline: for figures with limbs.", false, true,
+          &harmonic_table},
+         {"biharmonic", "Biharmonic, in the shape",
+          "The smoothest: bends without a kink at the probes; takes longer to work out.", false, true,
+          &biharmonic_table}}};
     return schemes;
 }
 
@@ -37,13 +113,41 @@ const WeightScheme* find_weight_scheme(std::string_view name) {
     return found == schemes.end() ? nullptr : &*found;
 }
 
-std::vector<float> weight_table(const WeightScheme& scheme, std::span<const Probe> probes,
-                                std::span<const glm::vec2> vertices) {
-    std::vector<float> table(vertices.size() * probes.size());
-    if (probes.empty()) return table;
-    for (std::size_t v = 0; v < vertices.size(); ++v)
-        scheme.at(probes, vertices[v], std::span(table).subspan(v * probes.size(), probes.size()));
-    return table;
+void fade_weights(double falloff, std::span<const Probe> probes, std::span<const glm::vec2> vertices,
+                  std::span<float> weights) {
+    assert(weights.size() == vertices.size() * probes.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        const auto row = weights.subspan(v * probes.size(), probes.size());
+        float most = 0;
+        for (std::size_t i = 0; i < probes.size(); ++i) {
+            const double x = 1 - squared(in_radii(probes[i], glm::dvec2(vertices[v]))) / (falloff * falloff);
+            const double left = x > 0 ? double(row[i]) * x * x : 0;
+            most = std::max(most, float(left));
+        }
+        if (most == 0) continue;  // beyond every probe: as without a limit
+        for (std::size_t i = 0; i < probes.size(); ++i) {
+            const double x = 1 - squared(in_radii(probes[i], glm::dvec2(vertices[v]))) / (falloff * falloff);
+            row[i] = x > 0 ? float(double(row[i]) * x * x) / most : 0.0f;
+        }
+    }
+}
+
+void keep_heaviest(std::size_t most, std::size_t probes, std::span<float> weights) {
+    assert(most >= 1 && probes >= 1 && weights.size() % probes == 0);
+    if (most >= probes) return;
+    std::vector<float> sorted(probes);
+    for (std::size_t start = 0; start < weights.size(); start += probes) {
+        const auto row = weights.subspan(start, probes);
+        sorted.assign(row.begin(), row.end());
+        const auto last = sorted.begin() + std::ptrdiff_t(most) - 1;
+        std::nth_element(sorted.begin(), last, sorted.end(), std::greater<>());
+        const float least = *last;
+        // Of equals the first stay.
+        auto equals =
+            std::ptrdiff_t(most) - std::count_if(row.begin(), row.end(), [&](float w) { return w > least; });
+        for (float& w : row)
+            if (w < least || (w == least && --equals < 0)) w = 0;
+    }
 }
 
 }  // namespace probewarp

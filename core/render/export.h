@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "model/document.h"
+#include "model/deformation.h"
 #include "render/renderer.h"
 
 namespace probewarp {

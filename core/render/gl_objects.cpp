@@ -23,11 +23,14 @@ GLuint generated(void (*generate)(GLsizei, GLuint*)) {
     return name;
 }
 
-GlShader compiled(GLenum stage, const Shader& shader) {
+GlShader compiled(GLenum stage, const Shader& shader, const char* define) {
     GlShader handle(glCreateShader(stage));
-    const char* text = shader.source.data();
-    const auto length = GLint(shader.source.size());
-    glShaderSource(handle.name(), 1, &text, &length);
+    // GLSL wants #version in the first line, before any definition.
+    const std::size_t line = shader.source.find('\n') + 1;
+    const std::string defined = define ? fmt::format("#define {}\n", define) : std::string();
+    const char* const texts[] = {shader.source.data(), defined.data(), shader.source.data() + line};
+    const GLint lengths[] = {GLint(line), GLint(defined.size()), GLint(shader.source.size() - line)};
+    glShaderSource(handle.name(), 3, texts, lengths);
     glCompileShader(handle.name());
     GLint good = GL_FALSE;
     glGetShaderiv(handle.name(), GL_COMPILE_STATUS, &good);
@@ -47,9 +50,9 @@ GlBuffer make_buffer() { return GlBuffer(generated(glGenBuffers)); }
 GlTexture make_texture() { return GlTexture(generated(glGenTextures)); }
 GlVertexArray make_vertex_array() { return GlVertexArray(generated(glGenVertexArrays)); }
 
-GlProgram make_program(const Shader& vertex, const Shader& fragment) {
-    const auto first = compiled(GL_VERTEX_SHADER, vertex);
-    const auto second = compiled(GL_FRAGMENT_SHADER, fragment);
+GlProgram make_program(const Shader& vertex, const Shader& fragment, const char* define) {
+    const auto first = compiled(GL_VERTEX_SHADER, vertex, define);
+    const auto second = compiled(GL_FRAGMENT_SHADER, fragment, define);
     GlProgram program(glCreateProgram());
     glAttachShader(program.name(), first.name());
     glAttachShader(program.name(), second.name());

@@ -52,8 +52,9 @@ GlVertexArray make_vertex_array();
 
 struct Shader;
 
-/// Compiles and links. Throws Error with the shader's file and the driver's log.
-GlProgram make_program(const Shader& vertex, const Shader& fragment);
+/// Compiles and links; `define`, where given, is a name that both shaders see as #defined. Throws Error with
+/// the shader's file and the driver's log.
+GlProgram make_program(const Shader& vertex, const Shader& fragment, const char* define = nullptr);
 
 /// The place of a uniform; throws Error where the program has none of that name.
 GLint uniform(const GlProgram& program, const char* name);

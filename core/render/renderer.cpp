@@ -64,22 +64,33 @@ void clear_window(int width, int height, glm::vec3 colour) {
 Renderer::Renderer()
     : mesh_program_(make_program(shaders::mesh_vert, shaders::mesh_frag)),
       mesh_dlb_program_(make_program(shaders::mesh_dlb_vert, shaders::mesh_frag)),
+      mesh_overlay_program_(make_program(shaders::mesh_vert, shaders::mesh_frag, "OVERLAY")),
       resolve_program_(make_program(shaders::screen_vert, shaders::resolve_frag)),
       display_program_(make_program(shaders::screen_vert, shaders::display_frag)),
       lines_program_(make_program(shaders::mesh_vert, shaders::lines_frag)),
       lines_dlb_program_(make_program(shaders::mesh_dlb_vert, shaders::lines_frag)),
       mesh_array_(make_vertex_array()),
+      picture_array_(make_vertex_array()),
       empty_array_(make_vertex_array()),
       rest_(make_buffer()),
       now_(make_buffer()),
+      overlay_(make_buffer()),
       triangles_(make_buffer()),
       edges_(make_buffer()),
+      picture_corners_(make_buffer()),
       weights_(make_buffer()),
       transformations_(make_buffer()),
       weights_texture_(make_texture()),
       transformations_texture_(make_texture()) {}
 
-void Renderer::set_picture(PictureTexture picture) { picture_ = std::move(picture); }
+void Renderer::set_picture(PictureTexture picture) {
+    picture_ = std::move(picture);
+    const float right = float(picture_.width), bottom = float(picture_.height);
+    const std::array<glm::vec2, 4> corners{{{0, 0}, {right, 0}, {0, bottom}, {right, bottom}}};
+    glBindVertexArray(picture_array_.name());
+    for (const GLuint location : {0u, 1u})
+        upload_vertices(picture_corners_, corners, location, GL_STATIC_DRAW);
+}
 
 void Renderer::set_mesh(const Mesh& mesh) {
     glBindVertexArray(mesh_array_.name());
@@ -89,14 +100,29 @@ void Renderer::set_mesh(const Mesh& mesh) {
                  mesh.triangles.data(), GL_STATIC_DRAW);
     triangle_places_ = mesh.triangles;
     edge_count_ = 0;
-    set_positions(mesh.rest);
+    overlay_style_.reset();
+    set_positions(mesh.rest, false);
 }
 
-void Renderer::set_positions(std::span<const glm::vec2> now) {
+void Renderer::set_positions(std::span<const glm::vec2> now, bool moved) {
     glBindVertexArray(mesh_array_.name());
     upload_vertices(now_, now, 1, GL_STREAM_DRAW);
     blend_centre_.reset();
+    moved_ = moved;
     check_gl("uploading the mesh");
+}
+
+void Renderer::set_overlay(std::span<const OverlayVertex> vertices, const OverlayStyle& style) {
+    overlay_style_.reset();
+    if (vertices.empty()) return;
+    glBindVertexArray(mesh_array_.name());
+    glBindBuffer(GL_ARRAY_BUFFER, overlay_.name());
+    glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(vertices.size_bytes()), vertices.data(), GL_STREAM_DRAW);
+    static_assert(sizeof(OverlayVertex) == 4 * sizeof(float));
+    glVertexAttribPointer(2, 4, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glEnableVertexAttribArray(2);
+    overlay_style_ = style;
+    check_gl("uploading the overlay");
 }
 
 void Renderer::set_blend(std::span<const float> weights, std::span<const DualComplex<float>> transformations,
@@ -112,6 +138,8 @@ void Renderer::set_blend(std::span<const float> weights, std::span<const DualCom
     upload_texels(transformations_, transformations_texture_, std::as_bytes(transformations), GL_RGBA32F);
     probes_ = int(transformations.size());
     blend_centre_ = centre;
+    moved_ = std::any_of(transformations.begin(), transformations.end(),
+                         [](const auto& p) { return p != DualComplex<float>{}; });
     check_gl("uploading the weights");
 }
 
@@ -136,26 +164,46 @@ void Renderer::set_view(const GlProgram& program, const View& view, int samples)
     set(program, "size", glm::dvec2(view.width * samples, view.height * samples));
 }
 
+void Renderer::use_mesh_program(const View& view, int samples) const {
+    const bool shader = blend_centre_ && moved_;
+    const GlProgram& program = overlay_style_ ? mesh_overlay_program_
+                               : shader       ? mesh_dlb_program_
+                                              : mesh_program_;
+    glUseProgram(program.name());
+    set_view(program, view, samples);
+    if (shader) bind_blend(program);
+    set(program, "picture", 0);
+    set(program, "last_level", picture_.last_level);
+    if (!overlay_style_) return;
+    set(program, "heat", overlay_style_->heat ? 1 : 0);
+    set(program, "iso_lines", overlay_style_->iso_lines ? 1 : 0);
+    set(program, "opacity", overlay_style_->opacity);
+    for (std::size_t i = 0; i < heat_colours.size(); ++i) {
+        const Colour c = heat_colours[i];
+        set(program, fmt::format("heat_colours[{}]", i).c_str(), glm::vec3(c.r, c.g, c.b) / 255.0f);
+    }
+}
+
 void Renderer::draw(const View& view, int samples) {
     // Float, because the sums of weighted colours must give every byte of a file back.
     resize(layer_, view.width * samples, view.height * samples, GL_RGBA32F);
     begin(layer_);
     const GLfloat nothing[4]{};
     glClearBufferfv(GL_COLOR, 0, nothing);
-    const GlProgram& program = blend_centre_ ? mesh_dlb_program_ : mesh_program_;
-    glUseProgram(program.name());
-    set_view(program, view, samples);
-    bind_blend(program);
-    set(program, "picture", 0);
-    set(program, "last_level", picture_.last_level);
+    use_mesh_program(view, samples);
     glBindTexture(GL_TEXTURE_2D, picture_.texture.name());
     // Where the mesh folds, a later triangle lies over an earlier one.
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    glBindVertexArray(mesh_array_.name());
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.name());
-    glDrawElements(GL_TRIANGLES, GLsizei(triangle_places_.size()), GL_UNSIGNED_INT, nullptr);
+    if (moved_ || overlay_style_) {
+        glBindVertexArray(mesh_array_.name());
+        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.name());
+        glDrawElements(GL_TRIANGLES, GLsizei(triangle_places_.size()), GL_UNSIGNED_INT, nullptr);
+    } else {
+        glBindVertexArray(picture_array_.name());
+        glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    }
     glDisable(GL_BLEND);
     check_gl("drawing the picture");
 }

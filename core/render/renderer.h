@@ -36,6 +36,22 @@ struct DisplayColours {
     glm::vec4 lines;                ///< of the mesh, straight alpha
 };
 
+/// What the overlay shows at a vertex.
+struct OverlayVertex {
+    glm::vec3 colour;  ///< where the style is not a heat map
+    float value;       ///< [0, 1]: of the heat map and the iso-lines
+};
+
+struct OverlayStyle {
+    bool heat = true;        ///< the value in the colours of the heat map; else the vertices' own colours
+    bool iso_lines = false;  ///< a line at every tenth of the value
+    float opacity = 0.6f;    ///< [0, 1]
+};
+
+/// The heat map's colours, evenly from value 0 to 1 (matplotlib's plasma): readable without colour vision.
+inline constexpr std::array<Colour, 4> heat_colours{
+    {{0x0d, 0x08, 0x87}, {0x9c, 0x17, 0x9e}, {0xed, 0x79, 0x53}, {0xf0, 0xf9, 0x21}}};
+
 class Renderer {
   public:
     /// Needs a loaded context, which must outlive it. Throws Error where a shader does not compile.
@@ -43,12 +59,17 @@ class Renderer {
 
     void set_picture(PictureTexture picture);
     void set_mesh(const Mesh& mesh);
-    /// The mesh as the processor deformed it. now: #vertices of the mesh, image pixels
-    void set_positions(std::span<const glm::vec2> now);
+    /// The mesh as the processor deformed it. now: #vertices of the mesh, image pixels. Where it has not
+    /// `moved`, all of the picture is drawn as it is, with the cells that the mesh leaves out.
+    void set_positions(std::span<const glm::vec2> now, bool moved);
     /// Has the vertex shader deform the mesh by DLB instead, until set_positions. Shapes as deform_dlb's.
     /// Throws Error where the driver has no buffer that large.
     void set_blend(std::span<const float> weights, std::span<const DualComplex<float>> transformations,
                    glm::vec2 centre);
+
+    /// Draws a colour over the picture wherever there is some of it, until it is set empty.
+    /// vertices: #vertices of the mesh, or none
+    void set_overlay(std::span<const OverlayVertex> vertices, const OverlayStyle& style = {});
 
     /// Draws the deformed picture as weighted colours, samples x samples texels a target pixel.
     void draw(const View& view, int samples);
@@ -66,16 +87,19 @@ class Renderer {
   private:
     void set_view(const GlProgram& program, const View& view, int samples) const;
     void bind_blend(const GlProgram& program) const;
+    void use_mesh_program(const View& view, int samples) const;
     void draw_lines(const View& view, glm::vec4 colour);
 
-    GlProgram mesh_program_, mesh_dlb_program_, resolve_program_, display_program_, lines_program_,
-        lines_dlb_program_;
-    GlVertexArray mesh_array_, empty_array_;
-    GlBuffer rest_, now_, triangles_, edges_;
+    GlProgram mesh_program_, mesh_dlb_program_, mesh_overlay_program_, resolve_program_, display_program_,
+        lines_program_, lines_dlb_program_;
+    GlVertexArray mesh_array_, picture_array_, empty_array_;
+    GlBuffer rest_, now_, overlay_, triangles_, edges_, picture_corners_;
     GlBuffer weights_, transformations_;
     GlTexture weights_texture_, transformations_texture_;
     std::optional<glm::vec2> blend_centre_;  ///< set where the vertex shader deforms
     int probes_ = 0;
+    bool moved_ = false;
+    std::optional<OverlayStyle> overlay_style_;  ///< set where there is an overlay
     PictureTexture picture_;
     Target layer_, integers_, shown_;
     std::vector<std::uint32_t> triangle_places_;

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <random>
 
-#include "model/document.h"
+#include "model/deformation.h"
 
 namespace probewarp {
 namespace {
@@ -15,7 +15,7 @@ Document document_with(int cells, int probes) {
     picture.image.width = picture.image.height = 4096;
     Document document;
     document.picture = std::make_shared<const Picture>(std::move(picture));
-    document.cells = cells;
+    document.mesh.cells = cells;
     std::mt19937 random(1);
     std::uniform_real_distribution<double> place(0, 4096), way(-200, 200), angle(-2, 2);
     for (int i = 0; i < probes; ++i) {
@@ -38,10 +38,10 @@ void deform(benchmark::State& state) {
     update(d, document);
     const glm::vec2 middle(2048);
     for (auto _ : state) {
-        deform_dlb(d.mesh.rest, d.weights, d.transformations, middle, d.now);
+        deform_dlb(mesh_of(d).rest, weights_of(d), d.transformations, middle, d.now);
         benchmark::ClobberMemory();
     }
-    const auto vertices = double(d.mesh.rest.size());
+    const auto vertices = double(mesh_of(d).rest.size());
     state.counters["vertices"] = vertices;
     state.counters["weights/s"] =
         benchmark::Counter(vertices * double(state.range(1)), benchmark::Counter::kIsIterationInvariantRate);
@@ -63,7 +63,7 @@ BENCHMARK(copy_weights)->Apply(sizes);
 
 void inverse_distance(benchmark::State& state) {
     const Document document = document_with(int(state.range(0)), int(state.range(1)));
-    const Mesh mesh = grid_mesh(4096, 4096, document.cells);
+    const Mesh mesh = grid_mesh(4096, 4096, document.mesh.cells);
     for (auto _ : state)
         benchmark::DoNotOptimize(weight_table(weight_schemes()[0], document.probes, mesh.rest));
 }

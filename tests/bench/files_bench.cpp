@@ -71,8 +71,8 @@ void render(benchmark::State& state) {
     Deformation deformation;
     update(deformation, document);
     renderer.set_picture(upload_picture(document.picture->image));
-    renderer.set_mesh(deformation.mesh);
-    renderer.set_positions(deformation.now);
+    renderer.set_mesh(mesh_of(deformation));
+    renderer.set_positions(deformation.now, deformation.moved);
     for (auto _ : state) {
         ExportJob job(renderer, document, deformation, {});
         while (!job.done()) job.step();

@@ -141,7 +141,8 @@ std::vector<Handle> random_probes(std::mt19937_64& random, int count, double w, 
     return probes;
 }
 
-/// The largest distance of the OBJ's vertices from where they must be, pixels.
+/// The largest distance of the OBJ's vertices from where they must be, pixels: the grid's, then one for each
+/// probe that is on no vertex of the grid, which goes where the probe goes.
 double worst_vertex(const std::string& obj, int w, int h, int columns, int rows,
                     const std::vector<Handle>& probes) {
     std::ifstream in(obj);
@@ -150,6 +151,13 @@ double worst_vertex(const std::string& obj, int w, int h, int columns, int rows,
     for (std::string line; std::getline(in, line);) {
         double x = 0, y = 0, z = 0;
         if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) != 3) continue;
+        if (seen >= std::size_t(columns + 1) * std::size_t(rows + 1)) {
+            double nearest = 1e9;
+            for (const Handle& p : probes) nearest = std::min(nearest, std::hypot(x - p.x, y - p.y));
+            worst = std::max(worst, nearest);
+            ++seen;
+            continue;
+        }
         const auto column = int(seen % std::size_t(columns + 1)), row = int(seen / std::size_t(columns + 1));
         // The rest position as the program holds it, a float: the probe's place on a vertex must be seen
         // alike.
@@ -158,7 +166,12 @@ double worst_vertex(const std::string& obj, int w, int h, int columns, int rows,
         worst = std::max(worst, std::hypot(x - expected.x, y - expected.y));
         ++seen;
     }
-    EXPECT_EQ(seen, std::size_t(columns + 1) * std::size_t(rows + 1));
+    std::size_t beside = 0;  // probes on no crossing of the grid
+    for (const Handle& p : probes) {
+        const double c = p.rx * columns / w, r = p.ry * rows / h;
+        beside += std::abs(c - std::round(c)) > 1e-4 || std::abs(r - std::round(r)) > 1e-4;
+    }
+    EXPECT_EQ(seen, std::size_t(columns + 1) * std::size_t(rows + 1) + beside);
     return worst;
 }
 
@@ -229,18 +242,39 @@ struct Triangle {
     std::array<Point, 3> rest, now;
 };
 
+using Corners = std::array<Point, 3>;
+
+/// Cuts the triangle of a cell in which a probe lies from there to its corners.
+void cut(std::vector<Corners>& cell, Point p) {
+    for (Corners& t : cell) {
+        const auto side = [&](const Point& a, const Point& b) {
+            return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+        };
+        const auto [a, b, c] = t;
+        // Anticlockwise as seen, y down; on an edge the first triangle is the one.
+        if (!(side(a, b) <= 0 && side(b, c) <= 0 && side(c, a) <= 0)) continue;
+        t = {a, b, p};
+        cell.push_back({b, c, p});
+        cell.push_back({c, a, p});
+        return;
+    }
+}
+
 /// Every triangle of the deformed grid, in drawing order: the cells row by row, the upper right half first.
 std::vector<Triangle> triangles(int w, int h, int columns, int rows, const std::vector<Handle>& probes) {
     const auto corner = [&](int c, int r) { return Point{double(w) * c / columns, double(h) * r / rows}; };
     std::vector<Triangle> all;
     for (int r = 0; r < rows; ++r)
-        for (int c = 0; c < columns; ++c)
-            for (const auto& rest : {std::array{corner(c, r), corner(c + 1, r + 1), corner(c + 1, r)},
-                                     std::array{corner(c, r), corner(c, r + 1), corner(c + 1, r + 1)}}) {
+        for (int c = 0; c < columns; ++c) {
+            std::vector<Corners> cell{{corner(c, r), corner(c + 1, r + 1), corner(c + 1, r)},
+                                      {corner(c, r), corner(c, r + 1), corner(c + 1, r + 1)}};
+            for (const Handle& p : probes) cut(cell, {p.rx, p.ry});
+            for (const Corners& rest : cell) {
                 Triangle t{rest, {}};
                 for (std::size_t k = 0; k < 3; ++k) t.now[k] = deformed(rest[k], probes, w / 2.0, h / 2.0);
                 all.push_back(t);
             }
+        }
     return all;
 }
 

@@ -58,7 +58,7 @@ void repair_zip(Bytes& bytes) {
 
 /// What decode_project promises; and that the document can be saved and comes back the same.
 void check(const probewarp::Document& document) {
-    if (!document.picture || document.cells < 1) std::abort();
+    if (!document.picture || document.mesh.cells < 1) std::abort();
     std::set<int> ids;
     for (const probewarp::Probe& p : document.probes)
         if (!ids.insert(p.id).second || p.id < 1 || !(p.radius > 0) || !std::isfinite(p.radius) ||

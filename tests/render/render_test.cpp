@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "model/document.h"
+#include "model/deformation.h"
 #include "render/context.h"
 #include "render/export.h"
 
@@ -117,10 +117,10 @@ TEST(VertexShader, DeformsAsTheProcessorDoes) {
         update(deformation, document);
         EXPECT_EQ(deformation.cancelled > 0, probes == 3);
         renderer.set_picture(upload_picture(document.picture->image));
-        renderer.set_mesh(deformation.mesh);
-        renderer.set_positions(deformation.now);
+        renderer.set_mesh(mesh_of(deformation));
+        renderer.set_positions(deformation.now, deformation.moved);
         const Image processor = exported(renderer, document, deformation);
-        renderer.set_blend(deformation.weights, deformation.transformations, {128, 128});
+        renderer.set_blend(weights_of(deformation), deformation.transformations, {128, 128});
         const Image shader = exported(renderer, document, deformation);
         // A hundredth of a pixel is 2.6 of the 256 levels that the ramp climbs a pixel; on the border, a
         // pixel may be covered by one of the two only.
@@ -154,8 +154,8 @@ TEST(Sampling, AWholePixelShiftIsExactAlsoWhereVerticesAreRounded) {
     const auto context = open_context("osmesa");
     Renderer renderer;
     renderer.set_picture(upload_picture(document.picture->image));
-    renderer.set_mesh(deformation.mesh);
-    renderer.set_positions(deformation.now);
+    renderer.set_mesh(mesh_of(deformation));
+    renderer.set_positions(deformation.now, deformation.moved);
     const Image shifted = exported(renderer, document, deformation);
     int wrong = 0;
     for (int y = down; y < height; ++y)

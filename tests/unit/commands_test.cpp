@@ -81,11 +81,11 @@ TEST_F(CommandsTest, WhatCannotBeUsedSaysWhy) {
     open_with({probe_at({100, 80}, {100, 80})});
     EXPECT_GT(expect_reasons(), 5);  // undo, redo, and what needs a chosen or a moved probe
     editor.selected = 1;
-    EXPECT_EQ(expect_reasons(), 3);  // undo, redo, reset the pose
+    EXPECT_EQ(expect_reasons(), 12);  // undo, redo, reset the pose, and nine that need paint
     probe().locked = true;
-    EXPECT_EQ(expect_reasons(), 4);  // and putting it back
+    EXPECT_EQ(expect_reasons(), 17);  // and putting it back, and four that paint
     probe().now.x += 1;
-    EXPECT_EQ(expect_reasons(), 4);  // still: what has moved is locked
+    EXPECT_EQ(expect_reasons(), 17);  // still: what has moved is locked
     editor = Editor();
     EXPECT_GT(expect_reasons(), 15);
 }
@@ -232,8 +232,14 @@ TEST_F(CommandsTest, SwitchesAndTools) {
     EXPECT_FALSE(editor.show_probes || find_command("Show probes").on(editor));
     press_key(editor, {'M'});
     EXPECT_TRUE(editor.show_mesh && find_command("Show mesh").on(editor));
-    EXPECT_FALSE(press_key(editor, {'W'}));
-    EXPECT_FALSE(press_key(editor, {'W', true}));
+    press_key(editor, {'W'});
+    EXPECT_EQ(editor.shown_weights, ShownWeights::chosen);
+    press_key(editor, {'W', false, true});
+    EXPECT_EQ(editor.shown_weights, ShownWeights::all);
+    press_key(editor, {'W', false, true});
+    EXPECT_EQ(editor.shown_weights, ShownWeights::none);
+    EXPECT_FALSE(press_key(editor, {'J'}));
+    EXPECT_FALSE(press_key(editor, {'J', true}));
 }
 
 TEST_F(CommandsTest, NothingRunsWhileSomethingIsDragged) {

@@ -4,7 +4,7 @@
 
 #include "generators.h"
 #include "math/blend.h"
-#include "model/document.h"
+#include "model/deformation.h"
 #include "pictures.h"
 
 namespace probewarp {
@@ -67,7 +67,7 @@ TEST(Deform, IsWithinAHundredthOfAPixelOfTheFormula) {
         const Document document = any_document(20);
         const Deformation deformation = deformed(document);
         for (std::size_t v = 0; v < deformation.now.size(); ++v) {
-            const Exact exact(document, deformation.mesh.rest[v]);
+            const Exact exact(document, mesh_of(deformation).rest[v]);
             // Where the probes pull against each other the sum is short (a small share), and the floats'
             // rounding (2^-24 of up to 8192 pixels) counts 1/share times in s1 and 1/share^2 times in s0; the
             // two sums of up to 64 numbers make it up to four times that. A float knows no better.
@@ -82,14 +82,14 @@ TEST(Deform, LeavesEveryVertexExactlyWhereNoProbeMoved) {
         Document document = any_document(1);
         for (Probe& probe : document.probes) probe.now = probe.rest, probe.angle = 0;
         const Deformation deformation = deformed(document);
-        RC_ASSERT(deformation.now == deformation.mesh.rest);
+        RC_ASSERT(deformation.now == mesh_of(deformation).rest);
         RC_ASSERT(deformation.cancelled == 0u);
     });
 }
 
 TEST(Deform, WithoutProbesMovesNothing) {
     const Deformation deformation = deformed(blank_document(640, 480));
-    EXPECT_EQ(deformation.now, deformation.mesh.rest);
+    EXPECT_EQ(deformation.now, mesh_of(deformation).rest);
     EXPECT_EQ(deformation.cancelled, 0u);
 }
 
@@ -99,7 +99,7 @@ TEST(Deform, OneProbeShiftsByWholePixelsExactly) {
     add_probe(document, {301.25, 77.5}, {301.25 + 64, 77.5 - 3});
     const Deformation deformation = deformed(document);
     for (std::size_t v = 0; v < deformation.now.size(); ++v)
-        ASSERT_EQ(deformation.now[v], deformation.mesh.rest[v] + glm::vec2(64, -3));
+        ASSERT_EQ(deformation.now[v], mesh_of(deformation).rest[v] + glm::vec2(64, -3));
 }
 
 TEST(Deform, MayWriteOverItsInput) {
@@ -107,8 +107,8 @@ TEST(Deform, MayWriteOverItsInput) {
     add_probe(document, {100, 100}, {150, 90}, 0.5);
     add_probe(document, {400, 300}, {410, 330}, -1);
     const Deformation deformation = deformed(document);
-    std::vector<glm::vec2> vertices = deformation.mesh.rest;
-    deform_dlb(vertices, deformation.weights, deformation.transformations, {320, 240}, vertices);
+    std::vector<glm::vec2> vertices = mesh_of(deformation).rest;
+    deform_dlb(vertices, weights_of(deformation), deformation.transformations, {320, 240}, vertices);
     EXPECT_EQ(vertices, deformation.now);
 }
 
@@ -129,7 +129,7 @@ TEST(Deform, VerticesWhoseWeightsCancelAreCountedAndFollowTheHeaviest) {
         // Of equals the first: the one at rest, or the one that moved by 7.
         for (const std::size_t v : {1u, 4u, 7u})
             // A whole turn in floats: 2e-7 of the 50 pixels to the probe, and as much again for the sum.
-            EXPECT_LT(distance(deformation.now[v], deformation.mesh.rest[v] + glm::vec2(second ? 0 : 7, 0)),
+            EXPECT_LT(distance(deformation.now[v], mesh_of(deformation).rest[v] + glm::vec2(second ? 0 : 7, 0)),
                       3e-5);
     }
 }

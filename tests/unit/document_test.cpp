@@ -1,6 +1,6 @@
 // The document and its deformation: what is computed anew and what is kept, and the pose of the picture at a
 // place.
-#include "model/document.h"
+#include "model/deformation.h"
 
 #include <limits>
 
@@ -91,8 +91,9 @@ struct Updates : ::testing::Test {
         update(deformation, document);
         Deformation anew;
         update(anew, document);
-        EXPECT_EQ(deformation.mesh.rest, anew.mesh.rest);
-        EXPECT_EQ(deformation.weights, anew.weights);
+        EXPECT_EQ(mesh_of(deformation).rest, mesh_of(anew).rest);
+        EXPECT_EQ(deformation.binding->automatic, anew.binding->automatic);
+        EXPECT_EQ(deformation.refined, anew.refined);
         EXPECT_EQ(deformation.transformations, anew.transformations);
         EXPECT_EQ(deformation.now, anew.now);
         EXPECT_EQ(deformation.cancelled, anew.cancelled);
@@ -113,32 +114,40 @@ TEST_F(Updates, EveryChangeIsFollowed) {
     EXPECT_EQ(steps(), (Steps{0, 1}));
     document.probes[0].angle += 1;
     EXPECT_EQ(steps(), (Steps{0, 1}));
-    document.probes[0].rest.y += 1;
-    EXPECT_EQ(steps(), (Steps{0, 1}));
+    document.probes[0].rest.y += 1;  // the mesh has a vertex there
+    EXPECT_EQ(steps(), (Steps{1, 1}));
     document.probes[1].radius *= 2;
     EXPECT_EQ(steps(), (Steps{0, 1}));
-    document.cells = 9;
+    document.mesh.cells = 9;
     EXPECT_EQ(steps(), (Steps{1, 1}));
     document.picture = blank_picture(200, 320);
     EXPECT_EQ(steps(), (Steps{1, 1}));
+    document.mesh.margin = 7;
+    EXPECT_EQ(steps(), (Steps{1, 1}));
+    document.weights.exponent = 3;
+    EXPECT_EQ(steps(), (Steps{0, 1}));
+    document.weights.scheme = "gaussian";
+    EXPECT_EQ(steps(), (Steps{0, 1}));
+    document.weights.falloff = 1.5;
+    EXPECT_EQ(steps(), (Steps{0, 1}));
+    document.weights.most = 1;
+    EXPECT_EQ(steps(), (Steps{0, 1}));
     document.probes.pop_back();
-    EXPECT_EQ(steps(), (Steps{0, 1}));
+    EXPECT_EQ(steps(), (Steps{1, 1}));
     document.probes.clear();
-    EXPECT_EQ(steps(), (Steps{0, 1}));
+    EXPECT_EQ(steps(), (Steps{1, 1}));
     add_probe(document, {1, 1}, {2, 2});
-    EXPECT_EQ(steps(), (Steps{0, 1}));
+    EXPECT_EQ(steps(), (Steps{1, 1}));
 }
 
 TEST_F(Updates, WeightsAreKeptWhereOnlyThePoseChanged) {
-    const float* before = deformation.weights.data();
-    deformation.weights[0] = 7;  // a mark that computing anew would wipe out
+    const Binding* before = deformation.binding.get();
     document.probes[0].now.x += 5;
     update(deformation, document);
-    EXPECT_EQ(deformation.weights.data(), before);
-    EXPECT_EQ(deformation.weights[0], 7);
+    EXPECT_EQ(deformation.binding.get(), before);
     document.probes[0].rest.x += 5;
     update(deformation, document);
-    EXPECT_NE(deformation.weights[0], 7);
+    EXPECT_NE(deformation.binding.get(), before);
 }
 
 TEST(PoseAt, IsThePlaceAtRestAndTheTurn) {
@@ -207,7 +216,7 @@ TEST(PoseAt, ANewProbeThereChangesNothingUnderIt) {
         const auto pose = pose_at(deformation, at);
         RC_ASSERT(pose.has_value());
         std::vector<float> weights(document.probes.size());
-        inverse_distance_weights(document.probes, pose->rest, weights);
+        inverse_distance_weights(document.probes, 2, pose->rest, weights);
         std::vector<DualComplex<double>> p;
         for (const Probe& probe : document.probes) p.push_back(transformation(probe, {160, 100}));
         const auto blend = blend_methods()[0].blend(std::vector<double>(weights.begin(), weights.end()), p);

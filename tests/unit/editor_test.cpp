@@ -83,7 +83,7 @@ TEST_F(EditorTest, AddingToAPictureThatOneProbeMovedMovesNoVertex) {
 
 /// Where the deformed mesh shows a point of the picture.
 glm::dvec2 shown_at(const Deformation& deformation, glm::dvec2 rest) {
-    const auto at = locate(deformation.mesh, deformation.mesh.rest, rest);
+    const auto at = locate(mesh_of(deformation), mesh_of(deformation).rest, rest);
     glm::dvec2 sum{0};
     for (int k = 0; k < 3; ++k)
         sum += at.value().barycentric[k] * glm::dvec2(deformation.now[at.value().corners[std::size_t(k)]]);

@@ -15,11 +15,11 @@ Document with_cells(int cells) {
     static const PicturePtr picture = testing::blank_picture(8, 8);
     Document document;
     document.picture = picture;
-    document.cells = cells;
+    document.mesh.cells = cells;
     return document;
 }
 
-int cells(const History& history) { return present(history).cells; }
+int cells(const History& history) { return present(history).mesh.cells; }
 
 TEST(History, GoesBackAndForth) {
     History history = new_history(with_cells(1), true);

@@ -111,5 +111,133 @@ TEST(Mesh, CellsWithoutAreaAreNotFound) {
     EXPECT_FALSE(locate(mesh, flat, {3, 3}));
 }
 
+/// A picture whose alpha is `alpha(x, y)`.
+template <class Alpha>
+Image picture(int width, int height, Alpha alpha) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    std::vector<std::uint8_t> rgba;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) rgba.insert(rgba.end(), {9, 9, 9, std::uint8_t(alpha(x, y))});
+    image.rgba = std::move(rgba);
+    return image;
+}
+
+using Cells = std::vector<std::uint8_t>;
+
+TEST(VisibleCells, AreThoseWithAPixelThatIsSeen) {
+    MeshSettings settings;
+    settings.cells = 4;
+    settings.margin = 0;
+    const Image one = picture(40, 20, [](int x, int y) { return x == 10 && y == 9 ? 7 : 0; });
+    EXPECT_EQ(visible_cells(one, settings), (Cells{0, 1, 0, 0, 0, 0, 0, 0}));
+    settings.threshold = 6;
+    EXPECT_EQ(visible_cells(one, settings), (Cells{0, 1, 0, 0, 0, 0, 0, 0}));
+    settings.threshold = 7;  // nothing is visible: the whole grid
+    EXPECT_EQ(visible_cells(one, settings), (Cells(8, 1)));
+    settings.threshold = 0;
+    settings.margin = 1;  // to the left by one pixel, and down by one
+    EXPECT_EQ(visible_cells(one, settings), (Cells{1, 1, 0, 0, 1, 1, 0, 0}));
+    settings.from_alpha = false;
+    EXPECT_EQ(visible_cells(one, settings), (Cells(8, 1)));
+    const Image opaque = picture(40, 20, [](int, int) { return 255; });
+    settings.from_alpha = true;
+    EXPECT_EQ(visible_cells(opaque, settings), (Cells(8, 1)));
+}
+
+TEST(VisibleCells, MissNoVisiblePixelAndKeepNoCellWithoutOne) {
+    expect_always("a cell stays where a visible pixel is in it or within the margin", [] {
+        const int width = *whole(1, 60), height = *whole(1, 60);
+        const Image image =
+            picture(width, height, [](int, int) { return *whole(0, 30) == 0 ? *whole(0, 255) : 0; });
+        MeshSettings settings;
+        settings.cells = *whole(1, 40);
+        settings.threshold = *whole(0, 254);
+        settings.margin = *whole(0, 3);
+        const auto [columns, rows] = grid_size(width, height, settings.cells);
+        Cells expected(std::size_t(columns) * std::size_t(rows), 0);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                if (pixel(image, x, y)[3] <= settings.threshold) continue;
+                for (int r = 0; r < rows; ++r)
+                    for (int c = 0; c < columns; ++c) {
+                        // Open intervals: what only touches the cell is not in it.
+                        const bool across = (x - settings.margin) * columns < double(width) * (c + 1) &&
+                                            (x + 1 + settings.margin) * columns > double(width) * c;
+                        const bool down = (y - settings.margin) * rows < double(height) * (r + 1) &&
+                                          (y + 1 + settings.margin) * rows > double(height) * r;
+                        if (across && down)
+                            expected[std::size_t(r) * std::size_t(columns) + std::size_t(c)] = 1;
+                    }
+            }
+        if (std::count(expected.begin(), expected.end(), 1) == 0 || !has_alpha(image))
+            std::fill(expected.begin(), expected.end(), std::uint8_t{1});
+        RC_ASSERT(visible_cells(image, settings) == expected);
+    });
+}
+
+TEST(ProbeMesh, LeavesCellsOutAndHasNoVertexThatNothingUses) {
+    const Image image = picture(40, 20, [](int, int) { return 255; });
+    const Mesh mesh = probe_mesh(image, 4, Cells{1, 0, 0, 1, 0, 0, 0, 1}, {});
+    EXPECT_EQ(mesh.triangles.size(), 3u * 2 * 3);
+    EXPECT_EQ(mesh.rest.size(), 4u + 6);
+    EXPECT_EQ(mesh.grid[2], no_vertex);
+    EXPECT_EQ(mesh.rest[mesh.grid[5]], glm::vec2(0, 10));
+    EXPECT_FALSE(locate_at_rest(mesh, {15, 5}));
+    ASSERT_TRUE(locate_at_rest(mesh, {35, 15}));
+    const Islands islands = islands_of(mesh);
+    EXPECT_EQ(islands.count, 2);
+    EXPECT_EQ(islands.of[mesh.grid[0]], 0);
+    EXPECT_EQ(islands.of[mesh.grid[14]], 1);
+    EXPECT_EQ(islands.of[mesh.grid[4]], islands.of[mesh.grid[14]]);
+}
+
+TEST(ProbeMesh, HasAVertexAtEveryProbe) {
+    expect_always("the triangles tile the kept cells as before, and each rest is a vertex", [] {
+        const Image image = picture(*whole(1, 50), *whole(1, 50), [](int, int) { return 255; });
+        const int cells = *whole(1, 9);
+        const auto [columns, rows] = grid_size(image.width, image.height, cells);
+        Cells kept(std::size_t(columns) * std::size_t(rows));
+        for (auto& cell : kept) cell = std::uint8_t(*whole(0, 3) > 0);
+        const int probes = *whole(0, 12);
+        std::vector<glm::dvec2> rests;
+        for (int i = 0; i < probes; ++i) {
+            rests.emplace_back(*real(-3, image.width + 3), *real(-3, image.height + 3));
+            if (*whole(0, 2) == 0) rests.back().x = double(image.width) * *whole(0, columns) / columns;
+            if (i > 0 && *whole(0, 4) == 0) rests.back() = rests.front();
+        }
+        const Mesh mesh = probe_mesh(image, cells, kept, rests);
+        const Mesh plain = probe_mesh(image, cells, kept, {});
+        const auto area = [](const Mesh& m) {
+            double sum = 0;
+            for (std::size_t i = 0; i < m.triangles.size(); i += 3) {
+                const glm::dvec2 a = m.rest[m.triangles[i]], b = glm::dvec2(m.rest[m.triangles[i + 1]]) - a,
+                                 c = glm::dvec2(m.rest[m.triangles[i + 2]]) - a;
+                sum += b.y * c.x - b.x * c.y;
+            }
+            return sum;
+        };
+        RC_ASSERT(std::abs(area(mesh) - area(plain)) <
+                  1e-2);  // vertices are floats: 4e-6 of 50 pixels, 50 long
+        RC_ASSERT(mesh.first_triangle.size() == kept.size() + 1);
+        for (std::size_t i = 0; i < rests.size(); ++i) {
+            const bool inside = plain.triangles.empty() ? false : bool(locate_at_rest(plain, rests[i]));
+            RC_ASSERT((mesh.anchors[i] != no_vertex) == inside);
+            if (!inside) continue;
+            // A ten-thousandth of a cell's corner, at most 50 pixels wide.
+            RC_ASSERT(distance(mesh.rest[mesh.anchors[i]], rests[i]) <
+                      0.01 * image.width + 0.01 * image.height);
+            const auto at = locate_at_rest(mesh, rests[i]);
+            RC_ASSERT(at.has_value());
+            double own = 0;
+            for (int k = 0; k < 3; ++k)
+                if (at->corners[std::size_t(k)] == mesh.anchors[i]) own += at->barycentric[k];
+            RC_ASSERT(own > 0.999);
+        }
+        for (const std::uint32_t v : mesh.triangles) RC_ASSERT(v < mesh.rest.size());
+    });
+}
+
 }  // namespace
 }  // namespace probewarp

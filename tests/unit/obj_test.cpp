@@ -16,7 +16,7 @@ using testing::blank_document;
 
 TEST(Obj, OfTwoCells) {
     Document document = blank_document(8, 4, 2);
-    add_probe(document, {4, 2}, {5, 2.5});  // everything by (1, 1/2)
+    add_probe(document, {-4, 2}, {-3, 2.5});  // everything by (1, 1/2)
     Deformation deformation;
     update(deformation, document);
     EXPECT_EQ(encode_obj(document, deformation),

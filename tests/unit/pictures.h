@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/document.h"
+#include "model/deformation.h"
 #include "model/error.h"
 
 namespace probewarp::testing {
@@ -25,7 +25,7 @@ inline PicturePtr blank_picture(int width, int height) {
 inline Document blank_document(int width, int height, int cells = default_cells) {
     Document document;
     document.picture = blank_picture(width, height);
-    document.cells = cells;
+    document.mesh.cells = cells;
     return document;
 }
 

@@ -65,7 +65,7 @@ TEST(MalformedProject, TheGoodOneOpens) {
     ASSERT_EQ(document.probes.size(), 1u);
     EXPECT_EQ(document.probes[0].now, glm::dvec2(3, 4));
     EXPECT_EQ(document.probes[0].id, 3);
-    EXPECT_EQ(document.cells, 10);
+    EXPECT_EQ(document.mesh.cells, 10);
     EXPECT_EQ(refusal_with("[1.5, 2]", "[-1e7, 1e7]"), "");
     EXPECT_EQ(refusal_with("\"id\": 3", "\"id\": 2000000000"), "");
 }
@@ -190,9 +190,9 @@ TEST(MalformedProject, NumbersThatAreNone) {
 }
 
 TEST(MalformedProject, AnotherFormat) {
-    for (const char* format : {"0", "2", "-1", "1.0", "\"1\"", "null", "18446744073709551617", "4294967297"})
+    for (const char* format : {"0", "3", "-1", "1.0", "\"1\"", "null", "18446744073709551617", "4294967297"})
         EXPECT_THAT(refusal_with("\"format\": 1", std::string("\"format\": ") + format),
-                    HasSubstr("reads format 1"))
+                    HasSubstr("reads formats 1 to 2"))
             << format;
 }
 

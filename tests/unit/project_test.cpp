@@ -66,7 +66,7 @@ Document any_document(const PicturePtr& base) {
     picture.name = any_name();
     Document document;
     document.picture = std::make_shared<const Picture>(std::move(picture));
-    document.cells = *whole(min_cells, max_cells);
+    document.mesh.cells = *whole(min_cells, max_cells);
     const int count = *whole(0, 20);
     const auto place = [] { return extreme(-max_probe_coordinate, max_probe_coordinate); };
     for (int i = 0; i < count; ++i) {
@@ -205,7 +205,7 @@ TEST(Project, AFileIsAProjectOrAPictureWhateverItsName) {
     const Document plain = read_document(picture);
     EXPECT_TRUE(plain.probes.empty());
     EXPECT_EQ(plain.picture->name, "b_.probewarp");  // fit for one line of text
-    EXPECT_EQ(plain.cells, default_cells);
+    EXPECT_EQ(plain.mesh.cells, default_cells);
     EXPECT_EQ(encode_project(decode_project(encode_project(plain), "x")), encode_project(plain));
 }
 

@@ -18,9 +18,9 @@ Probe probe_at(glm::dvec2 rest, double radius) {
     return probe;
 }
 
-std::vector<float> weights_of(const std::vector<Probe>& probes, glm::dvec2 vertex) {
+std::vector<float> weights_of(const std::vector<Probe>& probes, glm::dvec2 vertex, double exponent = 2) {
     std::vector<float> weights(probes.size(), -1);
-    inverse_distance_weights(probes, vertex, weights);
+    inverse_distance_weights(probes, exponent, vertex, weights);
     return weights;
 }
 
@@ -77,11 +77,77 @@ TEST(Weights, OfProbesFarOutsideThePictureStillFollowTheFormula) {
     });
 }
 
-TEST(Weights, TableIsRowMajor) {
-    const std::vector probes{probe_at({0, 0}, 10), probe_at({4, 0}, 10)};
-    const std::vector<glm::vec2> vertices{{0, 0}, {1, 0}, {2, 0}};
-    EXPECT_EQ(weight_table(weight_schemes()[0], probes, vertices), (Weights{1, 0, 1, 1.0f / 9, 1, 1}));
-    EXPECT_TRUE(weight_table(weight_schemes()[0], {}, vertices).empty());
+TEST(Weights, FallWithTheExponent) {
+    // 2 and 1/2 reaches away: the ratio is 1/4 to the exponent.
+    EXPECT_EQ(weights_of({probe_at({0, 5}, 10), probe_at({0, 20}, 10)}, {0, 0}, 1), (Weights{1, 0.25f}));
+    EXPECT_EQ(weights_of({probe_at({0, 5}, 10), probe_at({0, 20}, 10)}, {0, 0}, 3), (Weights{1, 1.0f / 64}));
+    EXPECT_EQ(weights_of({probe_at({0, 0}, 10), probe_at({0, 20}, 10)}, {0, 0}, 0.5), (Weights{1, 0}));
+}
+
+TEST(Weights, OfTheGaussianFadeWithTheReach) {
+    const auto at = [](double x) {
+        Weights weights(2);
+        gaussian_weights(std::vector{probe_at({0, 0}, 10), probe_at({40, 0}, 20)}, {x, 0}, weights);
+        return weights;
+    };
+    EXPECT_EQ(at(0), (Weights{1, 0}));  // each interpolates
+    EXPECT_EQ(at(40), (Weights{0, 1}));
+    // At 10: 1 / (e - 1) = 0.5820 against 1 / (e^2.25 - 1) = 0.1178: float's rounding of the quotient.
+    EXPECT_NEAR(at(10)[1], 0.1178 / 0.5820, 1e-4);
+    EXPECT_EQ(at(10)[0], 1);
+    // Far away the wider one rules, and nothing underflows to no weight at all.
+    EXPECT_EQ(at(1e6), (Weights{0, 1}));
+}
+
+TEST(Weights, TableIsRowMajorAndExactAtTheProbes) {
+    const Mesh grid = grid_mesh(4, 1, 4);
+    Image image;
+    image.width = 4;
+    image.height = 1;
+    const std::vector<std::uint8_t> kept(4, 1);
+    const std::vector probes{probe_at({0, 0}, 10), probe_at({1.3, 0.4}, 10)};
+    const std::vector<glm::dvec2> rests{probes[0].rest, probes[1].rest};
+    const Mesh mesh = probe_mesh(image, 4, kept, rests);
+    const Islands islands = islands_of(mesh);
+    std::shared_ptr<WeightCache> cache;
+    for (const char* name : {"inverse-distance", "gaussian"}) {
+        const auto table = find_weight_scheme(name)->table({mesh, islands, probes, 2, cache});
+        ASSERT_EQ(table.size(), mesh.rest.size() * 2);
+        EXPECT_EQ((Weights{table[0], table[1]}), (Weights{1, 0})) << name;
+        const std::size_t own = mesh.anchors[1];
+        EXPECT_EQ(own, mesh.rest.size() - 1);
+        EXPECT_EQ((Weights{table[2 * own], table[2 * own + 1]}), (Weights{0, 1})) << name;
+        const float second = weights_of(probes, {1, 0})[0];  // its ratio to the second probe's 1
+        if (name == std::string("inverse-distance")) {
+            EXPECT_EQ((Weights{table[2], table[3]}), (Weights{second, 1}));
+        }
+    }
+    EXPECT_EQ(grid.anchors.size(), 0u);
+}
+
+TEST(Weights, FadeToNothingAtTheFalloff) {
+    const std::vector probes{probe_at({0, 0}, 10), probe_at({100, 0}, 10)};
+    const std::vector<glm::vec2> vertices{{0, 0}, {10, 0}, {20, 0}, {50, 0}};
+    Weights weights{1, 0.5f, 1, 0.5f, 1, 0.5f, 1, 0.5f};
+    fade_weights(2, probes, vertices, weights);
+    EXPECT_EQ(weights,
+              (Weights{1, 0, 1, 0, 1, 0.5f, 1, 0.5f}));  // at 20 and at 50 no probe reaches: as before
+    Weights both{1, 1};
+    // 10 of 30 and 20 of 30: (1 - 1/9)^2 and (1 - 4/9)^2.
+    fade_weights(3, std::vector{probe_at({0, 0}, 10), probe_at({30, 0}, 10)}, std::vector<glm::vec2>{{10, 0}},
+                 both);
+    EXPECT_EQ(both[0], 1);
+    EXPECT_NEAR(both[1], 25.0 / 64, 1e-7);  // one float
+}
+
+TEST(Weights, OnlyTheHeaviestStay) {
+    Weights weights{0.1f, 1, 0.3f, 0.2f, 0.5f, 0.5f, 1, 0.5f};
+    keep_heaviest(2, 4, weights);
+    EXPECT_EQ(weights, (Weights{0, 1, 0.3f, 0, 0.5f, 0, 1, 0}));  // of equals the first
+    keep_heaviest(9, 4, weights);
+    EXPECT_EQ(weights, (Weights{0, 1, 0.3f, 0, 0.5f, 0, 1, 0}));
+    keep_heaviest(1, 4, weights);
+    EXPECT_EQ(weights, (Weights{0, 1, 0, 0, 0, 0, 1, 0}));
 }
 
 TEST(Weights, SchemesAreFoundByName) {

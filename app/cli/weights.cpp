@@ -1,0 +1,184 @@
+// `probewarp weights`: each probe's weights as a picture of its own, and such pictures back in as paint.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "io/file.h"
+#include "io/image_file.h"
+#include "io/paint_file.h"
+#include "io/printable.h"
+#include "io/project.h"
+#include "model/paint_ops.h"
+
+namespace probewarp {
+
+void apply(const BindingOptions& o, Document& document) {
+    for (const std::string& text : o.probes) document.probes.push_back(parse_probe(text, document));
+    if (o.mesh) document.mesh.cells = *o.mesh;
+    if (!o.alpha_threshold.empty()) {
+        document.mesh.from_alpha = o.alpha_threshold != "none";
+        if (document.mesh.from_alpha) document.mesh.threshold = std::stoi(o.alpha_threshold);
+    }
+    if (o.alpha_margin) document.mesh.margin = *o.alpha_margin;
+    if (!o.weights.empty()) document.weights.scheme = o.weights;
+    if (o.exponent) document.weights.exponent = *o.exponent;
+    if (o.falloff) document.weights.falloff = *o.falloff;
+    if (o.most) document.weights.most = *o.most;
+    check_size(document);
+}
+
+namespace {
+
+/// Empty where there is none.
+std::optional<std::size_t> find_probe_named(const Document& document, const std::string& name) {
+    const auto found = std::ranges::find(document.probes, name, &Probe::name);
+    if (found != document.probes.end()) return std::size_t(found - document.probes.begin());
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (error != std::errc() || end != name.data() + name.size()) return {};
+    if (number < 1 || number > document.probes.size()) return {};
+    return number - 1;
+}
+
+}  // namespace
+
+std::size_t probe_named(const Document& document, const std::string& name, const std::string& option) {
+    if (const auto found = find_probe_named(document, name)) return *found;
+    constexpr std::size_t most_listed = 100;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(document.probes.size(), most_listed); ++i)
+        names += (i == 0 ? "" : ", ") + document.probes[i].name;
+    if (document.probes.size() > most_listed) names += ", ...";
+    throw UsageError(fmt::format(
+        "{} {}: {}", option, name,
+        names.empty() ? "there are no probes" : "there is no such probe; expected one of " + names));
+}
+
+namespace {
+
+constexpr std::size_t raster_bytes = std::size_t{256} << 20;  // that the weights of one group may take
+
+/// Paints a probe with a map from elsewhere: "NAME=FILE.png".
+void import_paint(Document& document, const std::string& text) {
+    std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+        throw UsageError(fmt::format("--import {}: expected NAME=FILE.png", text));
+    // A name may have an equals sign in it itself.
+    for (std::size_t at = equals; at != std::string::npos; at = text.find('=', at + 1))
+        if (find_probe_named(document, text.substr(0, at))) equals = at;
+    const std::size_t probe = probe_named(document, text.substr(0, equals), "--import");
+    const std::string path = text.substr(equals + 1);
+    const auto bytes = read_file(path);
+    const PictureFrame frame = frame_of(document.picture->image);
+    try {
+        if (!find_image_format("png")->recognise(bytes))
+            throw Error("is not a PNG picture; expected one, grey and of any size");
+        auto map = decode_paint(bytes, 2.0 * frame.centre / frame.longer);
+        document.probes[probe].paint =
+            is_blank(map) ? nullptr : std::make_shared<const PaintMap>(std::move(map));
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", path, error.what()));
+    }
+}
+
+std::array<int, 2> size_of(const WeightsOptions& o, const Image& image) {
+    if (o.size.empty()) return {image.width, image.height};
+    const auto [width, height] = parse_size(o.size);
+    constexpr std::size_t most = max_image_bytes / 4;
+    if (width > max_image_side || height > max_image_side || std::size_t(width) * std::size_t(height) > most)
+        throw UsageError(fmt::format("--size {}: at most {} pixels along a side and {} million in all fit",
+                                     o.size, max_image_side, most / 1'000'000));
+    return {width, height};
+}
+
+/// Whether the character is a letter, digit, '-' or '_' that every file system takes: of those beyond ASCII
+/// the scripts without their punctuation, symbols and signs that cannot be seen.
+bool fits_in_name(std::string_view character) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+    if (character.size() == 1)
+        return (byte(0) < 0x80 && std::isalnum(byte(0))) || character == "-" || character == "_";
+    if (character.size() > 3) return false;
+    unsigned code = byte(0) & (character.size() == 2 ? 0x1Fu : 0x0Fu);
+    for (std::size_t i = 1; i < character.size(); ++i) code = code << 6 | (byte(i) & 0x3Fu);
+    const auto within = [code](unsigned first, unsigned last) { return code >= first && code <= last; };
+    return (within(0xC0, 0x1FFF) && code != 0xD7 && code != 0xF7) || within(0x3041, 0xD7A3) ||
+           within(0xF900, 0xFAFF);
+}
+
+/// "01-Head.png": the number from 1, of as many digits as the last one has, at least two.
+std::string file_name(const Document& document, std::size_t probe) {
+    constexpr std::size_t longest = 150;  // bytes; file systems take 255
+    std::string name;
+    const std::string text = printable(document.probes[probe].name);
+    for (std::size_t i = 0; i < text.size();) {
+        std::size_t end = i + 1;
+        while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) ++end;
+        const std::string_view character = std::string_view(text).substr(i, end - i);
+        if (name.size() + character.size() > longest) break;
+        name += fits_in_name(character) ? character : "_";
+        i = end;
+    }
+    const std::size_t digits = std::max<std::size_t>(2, std::to_string(document.probes.size()).size());
+    return fmt::format("{:0{}}-{}.png", probe + 1, digits, name);
+}
+
+void make_folder(const std::filesystem::path& path) {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (!std::filesystem::is_directory(path))
+        throw Error(fmt::format("{}: this folder cannot be made: {}", path.string(),
+                                error ? error.message() : "something else has its name"));
+}
+
+void write_weights(const Document& document, const WeightsOptions& o, std::array<int, 2> size) {
+    Deformation deformation;
+    update(deformation, document);
+    const std::filesystem::path folder = o.output;
+    make_folder(folder);
+    const auto [width, height] = size;
+    const std::size_t one = std::size_t(width) * std::size_t(height) * sizeof(std::uint16_t);
+    const std::size_t group = std::max<std::size_t>(1, raster_bytes / one);
+    for (std::size_t first = 0; first < document.probes.size(); first += group) {
+        std::vector<std::size_t> probes;
+        for (std::size_t i = first; i < std::min(first + group, document.probes.size()); ++i)
+            probes.push_back(i);
+        const auto images = weight_images(deformation, probes, width, height);
+        for (std::size_t k = 0; k < probes.size(); ++k) {
+            const std::filesystem::path path = folder / file_name(document, probes[k]);
+            std::error_code ignored;
+            if (std::filesystem::equivalent(path, o.input, ignored))
+                throw UsageError(
+                    fmt::format("{}: this is the input itself; expected another folder", path.string()));
+            write_file(path, encode_grey_png(width, height, images[k]));
+            if (!o.quiet) fmt::print("{}\n", printable(path.string()));
+        }
+    }
+}
+
+}  // namespace
+
+void weights(const WeightsOptions& o) {
+    if (o.output.empty() && o.save.empty())
+        throw UsageError("weights: nothing would be written; expected -o FOLDER or --save FILE.probewarp");
+    if (!o.save.empty() && std::filesystem::path(o.save).extension() != project_extension)
+        throw UsageError(
+            fmt::format("--save {}: expected a name that ends with {}", o.save, project_extension));
+    Document document = read_document(o.input);
+    apply(o, document);
+    const auto size = size_of(o, document.picture->image);
+    if (document.probes.empty())
+        throw Error(
+            fmt::format("{}: there are no probes, so there are no weights; expected a project with "
+                        "probes, or --probe",
+                        o.input));
+    for (const std::string& text : o.imports) import_paint(document, text);
+    if (!o.save.empty()) write_file(o.save, encode_project(document));
+    if (!o.output.empty()) write_weights(document, o, size);
+}
+
+}  // namespace probewarp

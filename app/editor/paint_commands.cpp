@@ -1,0 +1,135 @@
+#include "editor/paint_commands.h"
+
+#include <algorithm>
+
+#include "editor/painting.h"
+#include "model/paint_ops.h"
+
+namespace probewarp {
+
+namespace {
+
+bool any_paint(const Document& document) {
+    return std::any_of(document.probes.begin(), document.probes.end(),
+                       [](const Probe& probe) { return probe.paint != nullptr; });
+}
+
+std::size_t chosen_place(const Editor& editor) {
+    return std::size_t(find_probe(editor.document, editor.selected) - editor.document.probes.data());
+}
+
+/// The probe's map, or an empty one.
+PaintMap map_of(const Document& document, std::size_t probe) {
+    const Image& image = document.picture->image;
+    return document.probes[probe].paint ? *document.probes[probe].paint
+                                        : new_paint_map(image.width, image.height);
+}
+
+/// Has the window work out a document beside itself. The deformation is copied: the window goes on with its
+/// own.
+void add_task(Editor& editor, std::string label, std::function<Document(const Deformation&)> work) {
+    refresh(editor);
+    editor.tasks.push_back(
+        {std::move(label), [deformation = std::make_shared<const Deformation>(editor.deformation),
+                            work = std::move(work)] { return work(*deformation); }});
+}
+
+/// A task that gives the chosen probe a new map, worked out from its shares.
+void reshape(Editor& editor, const char* what,
+             std::function<PaintMap(const PaintMap&, ShareRaster)> operation) {
+    const std::size_t probe = chosen_place(editor);
+    add_task(editor, what + (" " + editor.document.probes[probe].name),
+             [probe, operation = std::move(operation)](const Deformation& deformation) {
+                 Document document = deformation.source;
+                 const PaintMap map = map_of(document, probe);
+                 document.probes[probe].paint =
+                     std::make_shared<const PaintMap>(operation(map, share_raster(deformation, probe, map)));
+                 return document;
+             });
+}
+
+void set_paint(Editor& editor, PaintPtr paint, const char* what) {
+    Probe& probe = *selected_probe(editor);
+    probe.paint = std::move(paint);
+    commit(editor, what + (" " + probe.name));
+}
+
+void mirror_paint(Editor& editor, Side from) {
+    const MirrorAxis axis = mirror_axis(editor);
+    const std::size_t probe = chosen_place(editor), other = counterpart(editor.document, probe, axis);
+    add_task(editor, "Mirror " + editor.document.probes[probe].name,
+             [probe, other, axis, from](const Deformation& deformation) {
+                 Document document = deformation.source;
+                 const PictureFrame frame = frame_of(document.picture->image);
+                 const PaintMap both = mirrored_paint(map_of(document, probe), frame, axis, from);
+                 document.probes[other].paint = std::make_shared<const PaintMap>(both);
+                 return document;
+             });
+}
+
+}  // namespace
+
+std::string_view needs_paintable(const Editor& editor) {
+    const Probe* probe = find_probe(editor.document, editor.selected);
+    return !probe ? "Choose a probe first" : probe->locked ? "The probe is locked" : "";
+}
+std::string_view needs_paint(const Editor& editor) {
+    const Probe* probe = find_probe(editor.document, editor.selected);
+    return !probe ? "Choose a probe first" : !probe->paint ? "The probe has no paint" : "";
+}
+std::string_view needs_any_paint(const Editor& editor) {
+    return any_paint(editor.document) ? "" : "Nothing is painted";
+}
+std::string_view needs_copied_paint(const Editor& editor) {
+    return editor.copied_paint ? needs_paintable(editor) : "Copy a probe's paint first";
+}
+std::string_view needs_stiffness(const Editor& editor) {
+    return editor.document.stiffness ? "" : "No stiffness is painted";
+}
+
+void fill_paint(Editor& editor) {
+    const PaintMap map = map_of(editor.document, chosen_place(editor));
+    set_paint(editor, std::make_shared<const PaintMap>(filled(map, float(editor.brush.value))), "Fill");
+}
+
+void invert_paint(Editor& editor) {
+    reshape(editor, "Invert", [](const PaintMap& map, ShareRaster raster) {
+        return paint_of(map, inverted(std::move(raster)));
+    });
+}
+
+void blur_paint(Editor& editor) {
+    reshape(editor, "Blur", [](const PaintMap& map, ShareRaster raster) {
+        return paint_of(map, blurred(raster, std::max(map.width, map.height) / 100.0));
+    });
+}
+
+void level_paint(Editor& editor, float black, float white, float gamma) {
+    reshape(editor, "Levels of", [=](const PaintMap& map, ShareRaster raster) {
+        return paint_of(map, levelled(std::move(raster), black, white, gamma));
+    });
+}
+
+void copy_paint(Editor& editor) { editor.copied_paint = selected_probe(editor)->paint; }
+void paste_paint(Editor& editor) { set_paint(editor, editor.copied_paint, "Paste paint onto"); }
+void mirror_left_to_right(Editor& editor) { mirror_paint(editor, Side::left); }
+void mirror_right_to_left(Editor& editor) { mirror_paint(editor, Side::right); }
+void limit_paint(Editor& editor) {
+    add_task(editor, "Limit paint",
+             [](const Deformation& deformation) { return limited_paint(deformation, 4); });
+}
+void normalise_paint(Editor& editor) { add_task(editor, "Normalise paint", &normalised_paint); }
+void clear_paint(Editor& editor) { set_paint(editor, nullptr, "Clear paint of"); }
+
+void clear_all_paint(Editor& editor) {
+    for (Probe& probe : editor.document.probes)
+        if (!probe.locked) probe.paint = nullptr;
+    commit(editor, "Clear all paint");
+}
+
+void clear_stiffness(Editor& editor) {
+    editor.document.stiffness = nullptr;
+    commit(editor, "Clear stiffness");
+}
+
+}  // namespace probewarp

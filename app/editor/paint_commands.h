@@ -1,0 +1,31 @@
+// The Weights menu: what is done to all of the chosen probe's paint, or to everyone's, at once.
+#pragma once
+
+#include "editor/editor.h"
+
+namespace probewarp {
+
+/// Why the chosen probe cannot be painted by a command; empty where it can.
+std::string_view needs_paintable(const Editor& editor);
+/// ... or has no paint to copy or clear.
+std::string_view needs_paint(const Editor& editor);
+std::string_view needs_any_paint(const Editor& editor);
+std::string_view needs_copied_paint(const Editor& editor);
+std::string_view needs_stiffness(const Editor& editor);
+
+// Each is a step of the history, at once or (where every texel is worked out anew) by a Task.
+void fill_paint(Editor& editor);  ///< with the brush's value
+void invert_paint(Editor& editor);
+void blur_paint(Editor& editor);
+void level_paint(Editor& editor, float black, float white, float gamma);
+void copy_paint(Editor& editor);
+void paste_paint(Editor& editor);
+void mirror_left_to_right(Editor& editor);
+void mirror_right_to_left(Editor& editor);
+void limit_paint(Editor& editor);  ///< to 4 probes a place
+void normalise_paint(Editor& editor);
+void clear_paint(Editor& editor);
+void clear_all_paint(Editor& editor);
+void clear_stiffness(Editor& editor);
+
+}  // namespace probewarp

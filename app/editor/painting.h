@@ -1,0 +1,47 @@
+// Painting with the brush and the pin: strokes on the canvas, and the keys that change the brush.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "editor/editor.h"
+
+namespace probewarp {
+
+/// One stroke while it lasts.
+struct PaintStroke {
+    /// What is painted on one map.
+    struct Layer {
+        int probe = 0;  ///< id; 0: the stiffness
+        PaintMap map;
+        Stroke stroke;
+        std::vector<float> shares;  ///< #vertices: the probe's before the stroke
+    };
+    std::shared_ptr<const Binding> binding;
+    Layer layer;
+    std::optional<Layer> mirrored;  ///< where the other side is another probe's
+    glm::dvec2 last{0};             ///< image pixels: where the last dab fell
+};
+
+inline constexpr double min_brush_radius = 0.5, max_brush_radius = 20000;  // image pixels
+
+/// A sixteenth of the picture's longer side.
+double default_brush_radius(const Image& image);
+
+/// The brush or the pin.
+bool is_painting_tool(const Editor& editor);
+/// Whether strokes paint stiffness rather than a probe's weights.
+bool paints_stiffness(const Editor& editor);
+bool is_brush_gesture(Gesture::Kind kind);
+
+void drag_brush(Editor& editor, const PointerEvent& event);
+void release_brush(Editor& editor);
+
+MirrorAxis mirror_axis(const Editor& editor);
+/// Where the axis is taken hold of, canvas pixels: above the picture's top edge.
+glm::dvec2 axis_grip(const Editor& editor);
+
+/// The brush's keys: brackets size it, digits set its strength. Returns whether the key meant something.
+bool press_brush_key(Editor& editor, int key);
+
+}  // namespace probewarp

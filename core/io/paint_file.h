@@ -1,0 +1,28 @@
+// Paint and weights as 16-bit grey PNGs: in projects, and for other programs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "model/error.h"
+#include "model/paint.h"
+
+namespace probewarp {
+
+/// The map as a PNG of its size: grey is the value, alpha the coverage.
+std::vector<std::byte> encode_paint(const PaintMap& map);
+
+/// A map of the PNG's size over `extent` (see PaintMap): the value is the mean of red, green and blue, the
+/// coverage is alpha, or 1 without. Tiles that are the same throughout are shared. Throws Error: a clause, no
+/// file name.
+PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent);
+
+/// A 16-bit grey PNG. grey: height x width, row-major
+std::vector<std::byte> encode_grey_png(int width, int height, std::span<const std::uint16_t> grey);
+
+/// Texels in the tiles of `map` that are not null; a tile that stands in several places counts once.
+std::size_t painted_texels(const PaintMap& map);
+
+}  // namespace probewarp

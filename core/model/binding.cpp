@@ -1,0 +1,78 @@
+#include "model/binding.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace probewarp {
+
+namespace {
+
+template <class Same>
+bool same_probes(const Document& a, const Document& b, Same same) {
+    return std::equal(a.probes.begin(), a.probes.end(), b.probes.begin(), b.probes.end(), same);
+}
+
+bool same_mesh(const Document& a, const Document& b) {
+    return a.picture == b.picture && a.mesh == b.mesh &&
+           same_probes(a, b, [](const Probe& p, const Probe& q) { return p.rest == q.rest; });
+}
+
+/// How many probes a vertex may follow is decided afterwards, with the paint.
+bool same_weights(const WeightSettings& a, const WeightSettings& b) {
+    return a.scheme == b.scheme && a.exponent == b.exponent && a.falloff == b.falloff;
+}
+
+std::shared_ptr<const Mesh> mesh_for(const Document& document, std::span<const std::uint8_t> kept) {
+    std::vector<glm::dvec2> rests;
+    for (const Probe& probe : document.probes) rests.push_back(probe.rest);
+    return std::make_shared<const Mesh>(
+        probe_mesh(document.picture->image, document.mesh.cells, kept, rests));
+}
+
+}  // namespace
+
+bool is_bound(const Binding* binding, const Document& document) {
+    return binding && same_mesh(binding->source, document) &&
+           same_weights(binding->source.weights, document.weights) &&
+           same_probes(binding->source, document,
+                       [](const Probe& p, const Probe& q) { return p.radius == q.radius; });
+}
+
+bool fits(const Binding* binding, const Document& document) {
+    return binding && binding->source.picture == document.picture &&
+           same_probes(binding->source, document,
+                       [](const Probe& p, const Probe& q) { return p.id == q.id; });
+}
+
+std::shared_ptr<const Binding> make_binding(const Document& document,
+                                            const std::shared_ptr<const Binding>& before,
+                                            const std::atomic<bool>* given_up) {
+    assert(document.picture);
+    check_size(document);
+    auto binding = std::make_shared<Binding>();
+    binding->source = document;
+    const bool keep_mesh = before && same_mesh(before->source, document);
+    const bool keep_cells =
+        before && before->source.picture == document.picture && before->source.mesh == document.mesh;
+    binding->kept = keep_cells ? before->kept : visible_cells(document.picture->image, document.mesh);
+    binding->mesh = keep_mesh ? before->mesh : mesh_for(document, binding->kept);
+    binding->islands = keep_mesh ? before->islands : islands_of(*binding->mesh);
+    if (before) binding->cache = before->cache;
+    if (document.probes.empty()) return binding;
+
+    const WeightScheme& scheme = *find_weight_scheme(document.weights.scheme);
+    const WeightInput input{*binding->mesh, binding->islands, document.probes, document.weights.exponent,
+                            binding->cache, given_up};
+    binding->automatic = scheme.table(input);
+    if (scheme.in_shape) binding->followed = followed_probes(input);
+    if (document.weights.falloff > 0)
+        fade_weights(document.weights.falloff, document.probes, binding->mesh->rest, binding->automatic);
+    return binding;
+}
+
+int lone_islands(const Binding& binding) {
+    return int(binding.followed.size()) -
+           int(std::count(binding.followed.begin(), binding.followed.end(), no_vertex));
+}
+
+}  // namespace probewarp

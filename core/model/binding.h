@@ -1,0 +1,41 @@
+// The binding: what the probes' rest positions give, before anything is dragged: the mesh and the automatic
+// weights. It may take long, so it is a value of its own that a thread can work out beside the window.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "model/document.h"
+
+namespace probewarp {
+
+struct Binding {
+    std::shared_ptr<const Mesh> mesh;  ///< shared with the next binding where the mesh stays the same
+    Islands islands;                   ///< of the mesh
+    /// #islands: the probe (its place in the document) that an island without one follows, else no_vertex.
+    /// Empty where the scheme is not measured in the shape, or there are no probes.
+    std::vector<std::uint32_t> followed;
+    std::vector<float> automatic;        ///< #vertices x #probes, row-major, the largest of each row 1
+    Document source;                     ///< what it was worked out from
+    std::vector<std::uint8_t> kept;      ///< the picture's visible_cells, to be used again
+    std::shared_ptr<WeightCache> cache;  ///< likewise
+};
+
+/// Whether `binding` (may be null) is what make_binding would give for `document`.
+bool is_bound(const Binding* binding, const Document& document);
+
+/// Whether `binding` has a column for each of the document's probes: it can deform, if not as it should.
+bool fits(const Binding* binding, const Document& document);
+
+/// Works out the binding; `before` (may be null) gives what can be used again, and must not be bound from
+/// elsewhere meanwhile. Requires a picture. Throws Error where there are more weights than fit, GivenUp where
+/// `given_up` became true.
+std::shared_ptr<const Binding> make_binding(const Document& document,
+                                            const std::shared_ptr<const Binding>& before,
+                                            const std::atomic<bool>* given_up = nullptr);
+
+/// Islands that have no probe of their own and follow the nearest one.
+int lone_islands(const Binding& binding);
+
+}  // namespace probewarp

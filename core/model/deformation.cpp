@@ -1,0 +1,126 @@
+#include "model/deformation.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "model/refine.h"
+
+namespace probewarp {
+
+const Mesh& mesh_of(const Deformation& deformation) { return *deformation.binding->mesh; }
+
+std::span<const float> weights_of(const Deformation& deformation) {
+    return deformation.refined.empty() ? deformation.binding->automatic : deformation.refined;
+}
+
+namespace {
+
+/// Whether nothing that refines the weights differs but the probes' paint.
+bool same_but_paint(const Document& a, const Document& b) {
+    return a.weights.most == b.weights.most && a.stiffness == b.stiffness &&
+           std::equal(a.probes.begin(), a.probes.end(), b.probes.begin(), b.probes.end(),
+                      [](const Probe& p, const Probe& q) { return p.locked == q.locked; });
+}
+
+/// Moves one run of vertices; returns how many of its weights cancel.
+std::size_t deform_run(Deformation& d, const Document& document, VertexRun run) {
+    const std::size_t probes = document.probes.size();
+    return find_blend_method(document.blend)
+        ->deform(std::span(mesh_of(d).rest).subspan(run.first, run.count),
+                 weights_of(d).subspan(run.first * probes, run.count * probes), d.transformations,
+                 glm::vec2(centre(document.picture->image)), std::span(d.now).subspan(run.first, run.count));
+}
+
+/// What changes where only paint did: the weights and the places of the vertices under it.
+void repaint(Deformation& d, const Document& document) {
+    const std::size_t probes = document.probes.size();
+    for (const VertexRun run : repainted(d.source, document, mesh_of(d))) {
+        d.cancelled -= deform_run(d, document, run);
+        settle_run(document, *d.binding, run,
+                   std::span(d.refined).subspan(run.first * probes, run.count * probes));
+        d.cancelled += deform_run(d, document, run);
+    }
+}
+
+std::vector<DualComplex<float>> transformations_of(const Document& document) {
+    std::vector<DualComplex<float>> all;
+    for (const Probe& probe : document.probes)
+        all.push_back(cast<float>(transformation(probe, centre(document.picture->image))));
+    return all;
+}
+
+}  // namespace
+
+void pose(Deformation& d, const Document& document, std::shared_ptr<const Binding> binding) {
+    assert(fits(binding.get(), document));
+    const bool rebound = d.binding != binding;
+    if (!rebound && d.source == document) return;
+    auto transformations = transformations_of(document);
+    const bool same_pose =
+        !rebound && d.transformations == transformations && d.source.blend == document.blend;
+    const bool was_refined = !d.refined.empty(), refined = is_refined(document);
+    const bool only_paint = !rebound && was_refined && refined && same_but_paint(d.source, document);
+    if (!d.binding || d.binding->mesh != binding->mesh) ++d.mesh_version;
+    d.binding = std::move(binding);
+    d.transformations = std::move(transformations);
+    d.now.resize(mesh_of(d).rest.size());
+    if (only_paint && same_pose && !document.stiffness) {
+        repaint(d, document);
+    } else {
+        if (!refined)
+            d.refined = {};
+        else if (!only_paint || repainted(d.source, document, mesh_of(d)).size() > 0)
+            d.refined = refined_weights(document, *d.binding);
+        d.cancelled = deform_run(d, document, {0, d.now.size()});
+    }
+    d.moved = !std::all_of(document.probes.begin(), document.probes.end(), at_rest);
+    d.source = document;
+    ++d.version;
+}
+
+void update(Deformation& deformation, const Document& document) {
+    auto binding = deformation.binding;
+    if (!is_bound(binding.get(), document) || !fits(binding.get(), document))
+        binding = make_binding(document, binding);
+    pose(deformation, document, std::move(binding));
+}
+
+std::vector<double> shares_at(const Deformation& deformation, const MeshPoint& at) {
+    const std::size_t probes = deformation.source.probes.size();
+    std::vector<double> shares(probes);
+    for (int k = 0; k < 3; ++k) {
+        const auto row = weights_of(deformation).subspan(at.corners[std::size_t(k)] * probes, probes);
+        double total = 0;
+        for (const float w : row) total += double(w);
+        for (std::size_t i = 0; i < probes; ++i) shares[i] += at.barycentric[k] * double(row[i]) / total;
+    }
+    return shares;
+}
+
+std::optional<PicturePose> pose_at(const Deformation& deformation, glm::dvec2 point) {
+    const Mesh& mesh = mesh_of(deformation);
+    const auto at = locate(mesh, deformation.now, point);
+    if (!at) return {};
+    const Document& document = deformation.source;
+    PicturePose pose{rest_point(mesh, *at), 0};
+    if (document.probes.empty()) return pose;
+
+    const std::vector<double> shares = shares_at(deformation, *at);
+    const glm::dvec2 middle = centre(document.picture->image);
+    std::vector<DualComplex<double>> transformations;
+    double mean = 0;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        transformations.push_back(transformation(document.probes[i], middle));
+        mean += shares[i] * document.probes[i].angle;
+    }
+    const auto blended = find_blend_method(document.blend)->blend(shares, transformations);
+    // The blend knows the half angle up to whole turns of it; the probes' mean angle says which one is meant.
+    const double half = std::arg(blended.p0), turn = 2 * std::numbers::pi;
+    pose.angle = 2 * (half + turn * std::round((mean / 2 - half) / turn));
+    return pose;
+}
+
+}  // namespace probewarp

@@ -1,0 +1,52 @@
+// A document's deformation, worked out from it and kept: only what changed since the last time is computed
+// anew.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "model/binding.h"
+
+namespace probewarp {
+
+struct Deformation {
+    std::shared_ptr<const Binding> binding;  ///< null before the first update
+    /// #vertices x #probes, row-major: the automatic weights with paint, stiffness and limits; empty where
+    /// there are none of these.
+    std::vector<float> refined;
+    std::vector<DualComplex<float>> transformations;  ///< #probes, about the picture's centre
+    std::vector<glm::vec2> now;                       ///< #vertices, image pixels
+    std::size_t cancelled = 0;                        ///< vertices whose weights cancel
+    bool moved = false;                               ///< whether any probe has moved
+    Document source;                                  ///< what all of this was worked out from
+    unsigned long mesh_version = 0;                   ///< grows with every new mesh
+    unsigned long version = 0;                        ///< grows with every change
+};
+
+const Mesh& mesh_of(const Deformation& deformation);
+
+/// The weights that deform: #vertices x #probes, row-major.
+std::span<const float> weights_of(const Deformation& deformation);
+
+/// Brings `deformation` up to date with `document`, which must have a picture. Throws Error as make_binding
+/// does, and then nothing is changed.
+void update(Deformation& deformation, const Document& document);
+
+/// Brings everything but the binding up to date: `binding` may be of an earlier state, but must fit the
+/// document.
+void pose(Deformation& deformation, const Document& document, std::shared_ptr<const Binding> binding);
+
+struct PicturePose {
+    glm::dvec2 rest;  ///< image pixels on the undeformed picture
+    double angle;     ///< radians: how far the picture is turned there
+};
+
+/// What lies under `point` of the deformed picture; empty beside it.
+std::optional<PicturePose> pose_at(const Deformation& deformation, glm::dvec2 point);
+
+/// Each probe's share at a place of the mesh: #probes, sums to 1. Empty without probes.
+std::vector<double> shares_at(const Deformation& deformation, const MeshPoint& at);
+
+}  // namespace probewarp

@@ -1,0 +1,130 @@
+#include "model/paint.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace probewarp {
+
+PaintMap new_paint_map(int width, int height) {
+    assert(width > 0 && height > 0);
+    constexpr int fewest = 256, most = 2048;
+    const int longer = std::max(width, height), along = std::clamp(longer, fewest, most);
+    const auto texels = [=](int side) {
+        return std::max(1, int(std::lround(double(along) * side / longer)));
+    };
+    const auto tiles = [](int side) { return std::size_t((side + paint_tile_side - 1) / paint_tile_side); };
+    PaintMap map;
+    map.width = texels(width);
+    map.height = texels(height);
+    map.extent = glm::dvec2(width, height) / double(longer);
+    map.tiles.resize(tiles(map.width) * tiles(map.height));
+    return map;
+}
+
+glm::dvec2 to_texels(const PaintMap& map, const PictureFrame& frame, glm::dvec2 point) {
+    return ((point - frame.centre) / (frame.longer * map.extent) + 0.5) * glm::dvec2(map.width, map.height);
+}
+
+glm::dvec2 to_picture(const PaintMap& map, const PictureFrame& frame, glm::dvec2 texel) {
+    return frame.centre + (texel / glm::dvec2(map.width, map.height) - 0.5) * (frame.longer * map.extent);
+}
+
+Paint texel(const PaintMap& map, int x, int y) {
+    assert(x >= 0 && y >= 0 && x < map.width && y < map.height);
+    const int across = (map.width + paint_tile_side - 1) / paint_tile_side;
+    const auto& tile =
+        map.tiles[std::size_t(y / paint_tile_side) * std::size_t(across) + std::size_t(x / paint_tile_side)];
+    return texel(tile.get(), TileRect::at(x, y));
+}
+
+Paint sample(const PaintMap& map, glm::dvec2 at) {
+    if (!(at.x >= 0 && at.y >= 0 && at.x <= map.width && at.y <= map.height)) return {};
+    if (map.width < 1 || map.height < 1) return {};
+    const double x = std::clamp(at.x - 0.5, 0.0, map.width - 1.0);
+    const double y = std::clamp(at.y - 0.5, 0.0, map.height - 1.0);
+    const int left = int(x), top = int(y);
+    const int right = std::min(left + 1, map.width - 1), bottom = std::min(top + 1, map.height - 1);
+    // In double the products of floats are exact, and so is their quotient where only one texel counts.
+    double coverage = 0, covered_value = 0;
+    const auto add = [&](int column, int row, double share) {
+        const Paint paint = texel(map, column, row);
+        coverage += share * paint.coverage;
+        covered_value += share * (double(paint.coverage) * paint.value);
+    };
+    add(left, top, (1 - (x - left)) * (1 - (y - top)));
+    add(right, top, (x - left) * (1 - (y - top)));
+    add(left, bottom, (1 - (x - left)) * (y - top));
+    add(right, bottom, (x - left) * (y - top));
+    if (!(coverage > 0)) return {};
+    return {float(std::min(covered_value / coverage, 1.0)), float(std::min(coverage, 1.0))};
+}
+
+bool is_blank(const PaintMap& map) {
+    return std::ranges::none_of(map.tiles, [](const auto& tile) {
+        return tile && std::ranges::any_of(tile->coverage, [](auto c) { return c != 0; });
+    });
+}
+
+std::size_t own_bytes(const PaintMap& map, const PaintMap* other) {
+    const bool comparable = other && other->width == map.width && other->height == map.height;
+    std::size_t own = 0;
+    for (std::size_t i = 0; i < map.tiles.size(); ++i)
+        if (map.tiles[i] && !(comparable && other->tiles[i] == map.tiles[i])) own += sizeof(PaintTile);
+    return own;
+}
+
+namespace {
+
+/// What probes ask for at one place: `painted` the sum of c v, `following` that of (1 - c) a.
+struct Demand {
+    double painted = 0, following = 0;
+};
+
+/// c v factor_painted + (1 - c) a factor_following is what a probe gets.
+struct Factors {
+    double painted = 1, following = 1;
+};
+
+/// Divides `rest` so that all of it is taken; at least one of the demands is positive.
+Factors divide(const Demand& demand, double rest) {
+    if (demand.painted > rest || !(demand.following > 0)) return {rest / demand.painted, 0};
+    return {1, (rest - demand.painted) / demand.following};
+}
+
+}  // namespace
+
+void settle(std::span<const float> automatic, std::span<const Paint> paint,
+            std::span<const std::uint8_t> locked, std::span<float> settled) {
+    assert(paint.size() == automatic.size() && locked.size() == automatic.size() &&
+           settled.size() == automatic.size());
+    double total = 0;
+    for (const float a : automatic) total += a;
+    const double each = 1 / total;
+    const auto painted = [&](std::size_t i) { return double(paint[i].coverage) * paint[i].value; };
+    const auto following = [&](std::size_t i) {
+        return (1 - double(paint[i].coverage)) * (automatic[i] * each);
+    };
+
+    std::array<Demand, 2> demands;  // of those that are not locked, and of those that are
+    for (std::size_t i = 0; i < automatic.size(); ++i) {
+        Demand& demand = demands[locked[i] ? 1 : 0];
+        demand.painted += painted(i);
+        demand.following += following(i);
+    }
+    const auto& [free, kept] = demands;
+    const double keep = kept.painted + kept.following;
+    const bool free_take = free.painted > 0 || free.following > 0;
+    const bool stand = !free_take && !(keep > 0);  // nobody wants anything: the automatic weights do
+    Factors of_free{0, 0}, of_locked{1, 1};
+    if (keep > 1 || (!free_take && keep > 0))
+        of_locked = {1 / keep, 1 / keep};
+    else if (free_take)
+        of_free = divide(free, 1 - keep);
+    for (std::size_t i = 0; i < automatic.size(); ++i) {
+        const Factors& factors = locked[i] ? of_locked : of_free;
+        settled[i] = float(stand ? automatic[i] * each
+                                 : painted(i) * factors.painted + following(i) * factors.following);
+    }
+}
+
+}  // namespace probewarp

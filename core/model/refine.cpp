@@ -1,0 +1,260 @@
+#include "model/refine.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <deque>
+
+namespace probewarp {
+
+bool is_refined(const Document& document) {
+    const std::size_t most = std::size_t(document.weights.most);
+    return document.stiffness || (most > 0 && most < document.probes.size()) ||
+           std::any_of(document.probes.begin(), document.probes.end(),
+                       [](const Probe& probe) { return probe.paint != nullptr; });
+}
+
+namespace {
+
+/// Adds the vertices of the grid within a rectangle of the picture, row by row.
+void add_runs(const Mesh& mesh, glm::dvec2 least, glm::dvec2 most, std::vector<VertexRun>& runs) {
+    const glm::dvec2 cell{mesh.size.x / mesh.columns, mesh.size.y / mesh.rows};
+    const auto place = [](double x, int last) { return std::size_t(std::clamp(x, 0.0, double(last))); };
+    const std::size_t left = place(std::floor(least.x / cell.x), mesh.columns),
+                      right = place(std::ceil(most.x / cell.x), mesh.columns),
+                      top = place(std::floor(least.y / cell.y), mesh.rows),
+                      bottom = place(std::ceil(most.y / cell.y), mesh.rows);
+    for (std::size_t y = top; y <= bottom; ++y) {
+        const auto* row = mesh.grid.data() + y * (std::size_t(mesh.columns) + 1);
+        VertexRun run;
+        // The grid's vertices are numbered along the row, so those that are there follow each other.
+        for (std::size_t x = left; x <= right; ++x) {
+            if (row[x] == no_vertex) continue;
+            if (run.count++ == 0) run.first = row[x];
+        }
+        if (run.count > 0) runs.push_back(run);
+    }
+}
+
+/// Adds the vertices under the tiles that two maps (either may be null) do not share.
+void add_differences(const PaintMap* before, const PaintMap* after, const PictureFrame& frame,
+                     const Mesh& mesh, std::vector<VertexRun>& runs) {
+    const PaintMap& map = after ? *after : *before;
+    const std::size_t across = std::size_t((map.width + paint_tile_side - 1) / paint_tile_side);
+    for (std::size_t i = 0; i < map.tiles.size(); ++i) {
+        if ((before ? before->tiles[i] : nullptr) == (after ? after->tiles[i] : nullptr)) continue;
+        const glm::dvec2 corner = double(paint_tile_side) * glm::dvec2(i % across, i / across);
+        // Sampling reaches half a texel beyond the tile.
+        add_runs(mesh, to_picture(map, frame, corner - 1.0),
+                 to_picture(map, frame, corner + double(paint_tile_side + 1)), runs);
+    }
+}
+
+void merge(std::vector<VertexRun>& runs) {
+    std::sort(runs.begin(), runs.end(),
+              [](const VertexRun& a, const VertexRun& b) { return a.first < b.first; });
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < runs.size(); ++i) {
+        VertexRun& run = runs[last];
+        if (runs[i].first <= run.first + run.count)
+            run.count = std::max(run.count, runs[i].first + runs[i].count - run.first);
+        else
+            runs[++last] = runs[i];
+    }
+    if (!runs.empty()) runs.resize(last + 1);
+}
+
+bool same_grid(const PaintMap& a, const PaintMap& b) {
+    return a.width == b.width && a.height == b.height && a.extent == b.extent;
+}
+
+}  // namespace
+
+std::vector<VertexRun> repainted(const Document& before, const Document& after, const Mesh& mesh) {
+    assert(before.probes.size() == after.probes.size());
+    const PictureFrame frame = frame_of(after.picture->image);
+    std::vector<VertexRun> runs;
+    for (std::size_t i = 0; i < after.probes.size(); ++i) {
+        const PaintMap *from = before.probes[i].paint.get(), *to = after.probes[i].paint.get();
+        if (from == to) continue;
+        if (from && to && !same_grid(*from, *to)) return {{0, mesh.rest.size()}};
+        add_differences(from, to, frame, mesh, runs);
+    }
+    if (runs.empty()) return runs;
+    // The probes' own vertices are few, and come after the grid's.
+    const auto grid = std::size_t(
+        std::count_if(mesh.grid.begin(), mesh.grid.end(), [](std::uint32_t v) { return v != no_vertex; }));
+    if (grid < mesh.rest.size()) runs.push_back({grid, mesh.rest.size() - grid});
+    merge(runs);
+    return runs;
+}
+
+namespace {
+
+/// At its own vertex a probe has all the automatic weight, and nobody is there to divide what paint takes
+/// from it. So the more of the row is covered, the more it becomes the mean of the cell's other rows.
+void open_anchor(const Binding& binding, std::size_t vertex, float covered, std::span<float> row) {
+    const Mesh& mesh = *binding.mesh;
+    std::vector<float> mean(row.size());
+    int rows = 0;
+    for (const std::uint32_t v : cell_corners(mesh, mesh.rest[vertex])) {
+        if (std::find(mesh.anchors.begin(), mesh.anchors.end(), v) != mesh.anchors.end()) continue;
+        ++rows;
+        const auto other = std::span(binding.automatic).subspan(v * row.size(), row.size());
+        float total = 0;
+        for (const float w : other) total += w;
+        for (std::size_t i = 0; i < row.size(); ++i) mean[i] += other[i] / total;
+    }
+    if (rows == 0) return;
+    float total = 0;  // of probes that coincide each has weight 1
+    for (const float w : row) total += w;
+    for (std::size_t i = 0; i < row.size(); ++i)
+        row[i] = (1 - covered) * row[i] / total + covered * mean[i] / float(rows);
+}
+
+}  // namespace
+
+void settle_run(const Document& document, const Binding& binding, VertexRun run, std::span<float> weights) {
+    const std::size_t probes = document.probes.size();
+    assert(weights.size() == run.count * probes);
+    const PictureFrame frame = frame_of(document.picture->image);
+    std::vector<Paint> paint(probes);
+    std::vector<std::uint8_t> locked(probes);
+    bool painted = false;
+    for (std::size_t i = 0; i < probes; ++i) {
+        locked[i] = document.probes[i].locked;
+        painted = painted || document.probes[i].paint;
+    }
+    std::vector<bool> anchored(painted ? binding.mesh->rest.size() : 0);
+    if (painted)
+        for (const std::uint32_t v : binding.mesh->anchors)
+            if (v != no_vertex) anchored[v] = true;
+    for (std::size_t k = 0; k < run.count; ++k) {
+        const auto automatic = std::span(binding.automatic).subspan((run.first + k) * probes, probes);
+        const auto row = weights.subspan(k * probes, probes);
+        std::copy(automatic.begin(), automatic.end(), row.begin());
+        if (!painted) continue;
+        const glm::dvec2 place = binding.mesh->rest[run.first + k];
+        float covered = 0;
+        for (std::size_t i = 0; i < probes; ++i) {
+            const PaintMap* map = document.probes[i].paint.get();
+            paint[i] = map ? sample(*map, to_texels(*map, frame, place)) : Paint{};
+            covered = std::max(covered, paint[i].coverage);
+        }
+        if (covered == 0) continue;  // where nothing is painted the weights stay as they are
+        if (anchored[run.first + k]) open_anchor(binding, run.first + k, covered, row);
+        settle(row, paint, locked, row);
+    }
+    if (document.weights.most > 0 && !document.stiffness)
+        keep_heaviest(std::size_t(document.weights.most), probes, weights);
+}
+
+std::vector<float> stiffness_at(const PaintMap& paint, const PictureFrame& frame,
+                                std::span<const glm::vec2> vertices) {
+    std::vector<float> stiffness;
+    stiffness.reserve(vertices.size());
+    for (const glm::dvec2 vertex : vertices) {
+        const Paint at = sample(paint, to_texels(paint, frame, vertex));
+        stiffness.push_back(at.value * at.coverage);
+    }
+    return stiffness;
+}
+
+namespace {
+
+/// The vertices beside each vertex, one list after the other.
+struct Neighbours {
+    std::vector<std::size_t> first;  ///< #vertices + 1
+    std::vector<std::uint32_t> all;
+
+    explicit Neighbours(const Mesh& mesh) : first(mesh.rest.size() + 1), all(mesh.triangles.size() * 2) {
+        for (const std::uint32_t v : mesh.triangles) first[v + 1] += 2;
+        for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
+        std::vector<std::size_t> next(first.begin(), first.end() - 1);
+        for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
+            for (std::size_t k = 0; k < 3; ++k)
+                for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3})
+                    all[next[mesh.triangles[i + k]]++] = mesh.triangles[i + other];
+    }
+    std::span<const std::uint32_t> of(std::size_t v) const {
+        return std::span(all).subspan(first[v], first[v + 1] - first[v]);
+    }
+};
+
+/// The region of each stiff vertex, from 0, and -1 for the others; returns how many there are. Grown from
+/// where the stiffness is at least `core` first, so that two stiff regions that touch softly stay two.
+int stiff_regions(const Neighbours& neighbours, std::span<const float> stiffness, std::vector<int>& region) {
+    int regions = 0;
+    region.assign(stiffness.size(), -1);
+    std::deque<std::uint32_t> edge;
+    const auto grow = [&](float least, std::deque<std::uint32_t>& front, std::deque<std::uint32_t>* beyond) {
+        while (!front.empty()) {
+            const std::uint32_t v = front.front();
+            front.pop_front();
+            if (beyond) beyond->push_back(v);
+            for (const std::uint32_t other : neighbours.of(v))
+                if (region[other] < 0 && stiffness[other] > 0 && stiffness[other] >= least) {
+                    region[other] = region[v];
+                    front.push_back(other);
+                }
+        }
+    };
+    for (const float least : {0.5f, 0.0f}) {
+        for (std::uint32_t v = 0; v < stiffness.size(); ++v) {
+            if (region[v] >= 0 || stiffness[v] <= 0 || stiffness[v] < least) continue;
+            region[v] = regions++;
+            std::deque<std::uint32_t> front{v};
+            grow(least, front, least > 0 ? &edge : nullptr);
+        }
+        if (least > 0) grow(0, edge, nullptr);  // the soft rims join before what is soft alone
+    }
+    return regions;
+}
+
+}  // namespace
+
+void stiffen(const Mesh& mesh, std::span<const float> stiffness, std::size_t probes,
+             std::span<float> weights) {
+    assert(stiffness.size() == mesh.rest.size() && weights.size() == stiffness.size() * probes);
+    std::vector<int> region;
+    const int regions = stiff_regions(Neighbours(mesh), stiffness, region);
+    if (regions == 0) return;
+    std::vector<double> mean(std::size_t(regions) * probes), mass(std::size_t(regions), 0.0);
+    const auto total = [](std::span<const float> row) {
+        double sum = 0;
+        for (const float w : row) sum += double(w);
+        return sum;
+    };
+    for (std::size_t v = 0; v < region.size(); ++v) {
+        if (region[v] < 0) continue;
+        const auto row = weights.subspan(v * probes, probes);
+        const double part = double(stiffness[v]) / total(row);
+        const std::size_t r = std::size_t(region[v]);
+        for (std::size_t i = 0; i < probes; ++i) mean[r * probes + i] += part * double(row[i]);
+        mass[r] += double(stiffness[v]);
+    }
+    for (std::size_t v = 0; v < region.size(); ++v) {
+        if (region[v] < 0) continue;
+        const auto row = weights.subspan(v * probes, probes);
+        const double s = double(stiffness[v]), own = (1 - s) / total(row);
+        const std::size_t r = std::size_t(region[v]);
+        for (std::size_t i = 0; i < probes; ++i)
+            row[i] = float(own * double(row[i]) + s * mean[r * probes + i] / mass[r]);
+    }
+}
+
+std::vector<float> refined_weights(const Document& document, const Binding& binding) {
+    const std::size_t probes = document.probes.size();
+    const VertexRun all{0, binding.mesh->rest.size()};
+    std::vector<float> weights(all.count * probes);
+    settle_run(document, binding, all, weights);
+    if (document.stiffness) {
+        const auto stiffness =
+            stiffness_at(*document.stiffness, frame_of(document.picture->image), binding.mesh->rest);
+        stiffen(*binding.mesh, stiffness, probes, weights);
+        if (document.weights.most > 0) keep_heaviest(std::size_t(document.weights.most), probes, weights);
+    }
+    return weights;
+}
+
+}  // namespace probewarp
