@@ -80,12 +80,34 @@ std::optional<glm::dvec3> barycentric(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, 
 
 double least(glm::dvec3 v) { return std::min({v.x, v.y, v.z}); }
 
-/// The cell at `point` of the picture's plane; empty beside the picture.
+/// Of a triangle's height or a cell's side: what is nearer to a vertex or an edge is on it. Vertices are
+/// floats, so that a point on an edge may lie a hair beside it.
+constexpr double hair = 1e-4;
+
+/// The cells that hold `point` of the picture's plane or on whose edge it lies, row by row: at most four.
+struct CellsAt {
+    std::array<std::size_t, 4> cells{};
+    std::size_t count = 0;
+    const std::size_t* begin() const { return cells.data(); }
+    const std::size_t* end() const { return cells.data() + count; }
+};
+CellsAt cells_at(const Mesh& mesh, glm::dvec2 point) {
+    CellsAt found;
+    const double x = point.x / mesh.size.x * mesh.columns, y = point.y / mesh.size.y * mesh.rows;
+    if (!(x >= -hair && y >= -hair && x <= mesh.columns + hair && y <= mesh.rows + hair)) return found;
+    const auto first = [](double at) { return std::max(0, int(std::floor(at - hair))); };
+    const auto last = [](double at, int cells) { return std::min(cells - 1, int(std::floor(at + hair))); };
+    for (int row = first(y); row <= last(y, mesh.rows); ++row)
+        for (int column = first(x); column <= last(x, mesh.columns); ++column)
+            found.cells[found.count++] = std::size_t(row) * std::size_t(mesh.columns) + std::size_t(column);
+    return found;
+}
+
+/// The cell of the mesh at `point`; empty beside it.
 std::optional<std::size_t> cell_at(const Mesh& mesh, glm::dvec2 point) {
-    if (!(point.x >= 0 && point.y >= 0 && point.x <= mesh.size.x && point.y <= mesh.size.y)) return {};
-    const int column = std::min(int(point.x / mesh.size.x * mesh.columns), mesh.columns - 1);
-    const int row = std::min(int(point.y / mesh.size.y * mesh.rows), mesh.rows - 1);
-    return std::size_t(row) * std::size_t(mesh.columns) + std::size_t(column);
+    for (const std::size_t cell : cells_at(mesh, point))
+        if (mesh.first_triangle[cell + 1] > mesh.first_triangle[cell]) return cell;
+    return {};
 }
 
 /// The grid's vertices that a kept cell has, row by row.
@@ -108,29 +130,47 @@ void add_grid_vertices(Mesh& mesh, std::span<const std::uint8_t> kept) {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// Cuts the triangle of `cell` that holds `point` into three; returns the vertex there. Vertices are floats,
-/// so a point on the cell's edge may lie a hair outside of it: the nearest triangle is the one.
-std::uint32_t insert(Mesh& mesh, std::vector<Corners>& cell, glm::dvec2 point) {
-    constexpr double on_vertex = 1 - 1e-4;
-    Corners* nearest = nullptr;
-    glm::dvec3 at{0};
-    for (Corners& triangle : cell) {
-        const auto [a, b, c] = triangle;
-        const auto here = barycentric(mesh.rest[a], mesh.rest[b], mesh.rest[c], point);
-        if (!here || (nearest && least(*here) <= least(at))) continue;
-        nearest = &triangle;
-        at = *here;
+/// Cuts the triangle of `cell` that holds `point` into three, or those on whose edge it lies into two each,
+/// from `vertex` (no_vertex: one that is added there). Returns the vertex at the point: a corner where it
+/// lies on one.
+std::uint32_t insert(Mesh& mesh, std::vector<Corners>& cell, glm::dvec2 point, std::uint32_t vertex) {
+    std::vector<std::pair<std::size_t, glm::dvec3>> holding;
+    for (std::size_t t = 0; t < cell.size(); ++t) {
+        const auto [a, b, c] = cell[t];
+        const auto at = barycentric(mesh.rest[a], mesh.rest[b], mesh.rest[c], point);
+        if (!at || least(*at) < -hair) continue;
+        for (int k = 0; k < 3; ++k)
+            if ((*at)[k] > 1 - hair) return cell[t][std::size_t(k)];
+        holding.emplace_back(t, *at);
     }
-    const auto [a, b, c] = *nearest;
-    if (at.x >= on_vertex) return a;
-    if (at.y >= on_vertex) return b;
-    if (at.z >= on_vertex) return c;
-    const auto vertex = std::uint32_t(mesh.rest.size());
-    mesh.rest.emplace_back(point);
-    *nearest = {a, b, vertex};
-    cell.push_back({b, c, vertex});
-    cell.push_back({c, a, vertex});
+    if (holding.empty()) return vertex;
+    if (vertex == no_vertex) {
+        vertex = std::uint32_t(mesh.rest.size());
+        mesh.rest.emplace_back(point);
+    }
+    for (const auto& [t, at] : holding) {
+        const Corners old = cell[t];
+        std::size_t cuts = 0;
+        for (std::size_t k = 0; k < 3; ++k) {  // a part beside each edge but the one that the point is on
+            if (at[int(k)] <= hair) continue;
+            const Corners part{old[(k + 1) % 3], old[(k + 2) % 3], vertex};
+            if (cuts++ == 0)
+                cell[t] = part;
+            else
+                cell.push_back(part);
+        }
+    }
     return vertex;
+}
+
+/// Pairs of a cell and the place of a rest that it holds or has on its edge, in the cells' order.
+std::vector<std::pair<std::size_t, std::size_t>> rests_by_cell(const Mesh& mesh,
+                                                               std::span<const glm::dvec2> rests) {
+    std::vector<std::pair<std::size_t, std::size_t>> found;
+    for (std::size_t i = 0; i < rests.size(); ++i)
+        for (const std::size_t cell : cells_at(mesh, rests[i])) found.emplace_back(cell, i);
+    std::sort(found.begin(), found.end());
+    return found;
 }
 
 }  // namespace
@@ -146,11 +186,7 @@ Mesh probe_mesh(const Image& image, int cells, std::span<const std::uint8_t> kep
     assert(kept.size() == std::size_t(columns) * std::size_t(rows));
     add_grid_vertices(mesh, kept);
 
-    // The probes by their cells, in the probes' order within one.
-    std::vector<std::pair<std::size_t, std::size_t>> by_cell;
-    for (std::size_t i = 0; i < rests.size(); ++i)
-        if (const auto cell = cell_at(mesh, rests[i]); cell && kept[*cell]) by_cell.emplace_back(*cell, i);
-    std::sort(by_cell.begin(), by_cell.end());
+    const auto by_cell = rests_by_cell(mesh, rests);
     mesh.anchors.assign(rests.size(), no_vertex);
     mesh.first_triangle.reserve(kept.size() + 1);
     mesh.triangles.reserve(kept.size() * 6 + rests.size() * 6);
@@ -165,8 +201,11 @@ Mesh probe_mesh(const Image& image, int cells, std::span<const std::uint8_t> kep
         const std::uint32_t bottom_left = mesh.grid[corner + across],
                             bottom_right = mesh.grid[corner + across + 1];
         cut.assign({{top_left, bottom_right, top_right}, {top_left, bottom_left, bottom_right}});
-        for (; next != by_cell.end() && next->first == cell; ++next)
-            mesh.anchors[next->second] = insert(mesh, cut, rests[next->second]);
+        while (next != by_cell.end() && next->first < cell) ++next;  // cells that are left out
+        for (; next != by_cell.end() && next->first == cell; ++next) {
+            std::uint32_t& anchor = mesh.anchors[next->second];
+            anchor = insert(mesh, cut, rests[next->second], anchor);
+        }
         for (const Corners& triangle : cut)
             mesh.triangles.insert(mesh.triangles.end(), triangle.begin(), triangle.end());
     }

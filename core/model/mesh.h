@@ -37,7 +37,8 @@ struct Mesh {
     /// #vertices; image pixels. Those of the grid row by row from the top-left corner, then the probes' own.
     std::vector<glm::vec2> rest;
     /// #triangles x 3 places in `rest`, cell after cell, row by row. A cell is cut from its top-left to its
-    /// bottom-right corner; a triangle with a probe inside is cut again from there to its corners.
+    /// bottom-right corner; a triangle with a probe inside or on its edge is cut again from there
+    /// to its corners.
     std::vector<std::uint32_t> triangles;
     /// rows x columns + 1: the first triangle of each cell; a cell that is left out has none.
     std::vector<std::uint32_t> first_triangle;

@@ -38,13 +38,24 @@ Place place_on_vertex(const WeightInput& input, const Shape& shape, std::uint32_
     return place;
 }
 
-/// Requires a point in a kept cell.
+/// The kept cell that holds a point given in cells, or on whose edge it lies; requires one.
+glm::ivec2 kept_cell(const Shape& shape, glm::dvec2 at) {
+    constexpr double hair = 1e-3;  // more than the mesh's own, so that what it found is found
+    for (const double y : {at.y, at.y - hair, at.y + hair})
+        for (const double x : {at.x, at.x - hair, at.x + hair}) {
+            const glm::ivec2 cell(std::clamp(int(std::floor(x)), 0, shape.columns - 1),
+                                  std::clamp(int(std::floor(y)), 0, shape.rows - 1));
+            if (shape.has_cell(cell.x, cell.y)) return cell;
+        }
+    assert(false);
+    return {0, 0};
+}
+
+/// Requires a point in a kept cell or on its edge.
 Place place_in_cell(const WeightInput& input, const Shape& shape, glm::dvec2 at) {
-    // As the mesh finds a point's cell.
     const glm::dvec2 scaled = at / input.mesh.size * glm::dvec2(shape.columns, shape.rows);
-    const int column = std::clamp(int(scaled.x), 0, shape.columns - 1);
-    const int row = std::clamp(int(scaled.y), 0, shape.rows - 1);
-    assert(shape.has_cell(column, row));
+    const glm::ivec2 cell = kept_cell(shape, scaled);
+    const int column = cell.x, row = cell.y;
     const double x = std::clamp(scaled.x - column, 0.0, 1.0), y = std::clamp(scaled.y - row, 0.0, 1.0);
     Place place;
     place.at = at;

@@ -244,19 +244,24 @@ struct Triangle {
 
 using Corners = std::array<Point, 3>;
 
-/// Cuts the triangle of a cell in which a probe lies from there to its corners.
+/// Cuts the triangles of a cell in or on the edge of which a probe lies from there to their corners.
 void cut(std::vector<Corners>& cell, Point p) {
-    for (Corners& t : cell) {
+    const std::size_t count = cell.size();
+    for (std::size_t t = 0; t < count; ++t) {
+        const Corners old = cell[t];
         const auto side = [&](const Point& a, const Point& b) {
             return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
         };
-        const auto [a, b, c] = t;
-        // Anticlockwise as seen, y down; on an edge the first triangle is the one.
-        if (!(side(a, b) <= 0 && side(b, c) <= 0 && side(c, a) <= 0)) continue;
-        t = {a, b, p};
-        cell.push_back({b, c, p});
-        cell.push_back({c, a, p});
-        return;
+        const auto [a, b, c] = old;
+        const std::array<double, 3> sides{side(b, c), side(c, a), side(a, b)};
+        // Anticlockwise as seen, y down.
+        if (*std::max_element(sides.begin(), sides.end()) > 0) continue;
+        std::vector<Corners> parts;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (sides[k] < 0) parts.push_back({old[(k + 1) % 3], old[(k + 2) % 3], p});
+        if (parts.size() < 2) continue;  // on a corner
+        cell[t] = parts[0];
+        cell.insert(cell.end(), parts.begin() + 1, parts.end());
     }
 }
 

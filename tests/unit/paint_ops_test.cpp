@@ -235,7 +235,7 @@ TEST(ShareLookup, SettlesThePaintOfThePlaceItself) {
         const Deformation bare = deformation_of(document);
         document.probes[0].paint = shared(random_paint());
         document.probes[2].paint = shared(random_paint());
-        document.probes[*whole(0, 2)].locked = *whole(0, 1) == 1;
+        document.probes[std::size_t(*whole(0, 2))].locked = *whole(0, 1) == 1;
         const Deformation deformation = deformation_of(document);
         const glm::dvec2 point{*real(0, 40), *real(0, 30)};
         auto wanted = looked_up(bare, point);
@@ -377,7 +377,7 @@ TEST(WeightImages, APaintedShareComesOutAsItIs) {
     Document document = blank_document(400, 300, 10);
     for (const glm::dvec2 rest : {glm::dvec2(80, 90), {300, 120}, {180, 250}})
         add_probe(document, rest, rest);
-    const auto value = [](int x, int y) { return std::uint16_t((y * 400 + x) * 40503u); };
+    const auto value = [](int x, int y) { return std::uint16_t(unsigned(y * 400 + x) * 40503u); };
     document.probes[1].paint = shared(painted(map_of(400, 300), [&](int x, int y) {
         return Paint{from_stored(value(x, y)), 1};
     }));
