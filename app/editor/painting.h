@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "editor/editor.h"
@@ -21,7 +22,13 @@ struct PaintStroke {
     Layer layer;
     std::optional<Layer> mirrored;  ///< where the other side is another probe's
     glm::dvec2 last{0};             ///< image pixels: where the last dab fell
+    std::vector<glm::vec2> still;   ///< #vertices, image pixels: as shown_positions says
 };
+
+/// Where the canvas shows the mesh's vertices: #vertices, image pixels. While a stroke is painted under shown
+/// weights the picture stands still, or it would slip away under the brush; otherwise it is deformed as one
+/// goes.
+std::span<const glm::vec2> shown_positions(const Editor& editor);
 
 inline constexpr double min_brush_radius = 0.5, max_brush_radius = 20000;  // image pixels
 

@@ -31,6 +31,12 @@ glm::dvec2 axis_grip(const Editor& editor) {
     return to_canvas(editor.view, axis.point + way * glm::dvec2(std::sin(axis.angle), -std::cos(axis.angle)));
 }
 
+std::span<const glm::vec2> shown_positions(const Editor& editor) {
+    const bool still = editor.gesture && editor.gesture->stroke && !editor.gesture->stroke->still.empty() &&
+                       editor.gesture->stroke->binding == editor.deformation.binding;
+    return still ? editor.gesture->stroke->still : editor.deformation.now;
+}
+
 namespace {
 
 PaintPtr& paint_of_layer(Document& document, int probe) {
@@ -101,7 +107,7 @@ void fall_at(Editor& editor, PaintStroke& stroke, glm::dvec2 point, bool inverte
     const Brush brush = brush_for(editor, inverted);
     PaintStroke::Layer& layer = stroke.layer;
     const Mask mask =
-        dab_mask(layer.map, frame, *stroke.binding->mesh, editor.deformation.now, image, brush, point);
+        dab_mask(layer.map, frame, *stroke.binding->mesh, shown_positions(editor), image, brush, point);
     fall(editor, stroke, layer, mask, brush, inverted);
     if (!editor.mirror) return;
     PaintStroke::Layer& other = stroke.mirrored ? *stroke.mirrored : layer;
@@ -132,6 +138,7 @@ void begin_stroke(Editor& editor, const PointerEvent& event) {
     stroke->binding = editor.deformation.binding;
     stroke->layer = layer_of(editor, probe);
     stroke->last = to_image(editor.view, event.at);
+    if (editor.shown_weights != ShownWeights::none) stroke->still = editor.deformation.now;
     if (editor.mirror && !stiff) {
         const auto place = std::size_t(find_probe(editor.document, probe) - editor.document.probes.data());
         const std::size_t other = counterpart(editor.document, place, mirror_axis(editor));

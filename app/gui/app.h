@@ -30,6 +30,7 @@ struct Shown {
     CanvasView view;
     glm::ivec2 size{0};
     bool mesh = false, light = false;
+    bool still = false;  ///< the picture stands still under a stroke
     OverlayKey overlay;
     GLuint texture = 0;
 };

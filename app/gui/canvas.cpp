@@ -27,10 +27,11 @@ void update_texture(App& app, glm::ivec2 size) {
         return;
     Shown& shown = app.shown;
     const OverlayKey overlay = overlay_key(editor);
+    const bool still = shown_positions(editor).data() != editor.deformation.now.data();
     if (shown.picture == app.uploaded && shown.version == editor.deformation.version &&
         shown.mesh_version == editor.deformation.mesh_version && same(shown.view, editor.view) &&
         shown.size == size && shown.mesh == editor.show_mesh && shown.light == app.theme.is_light &&
-        shown.overlay == overlay)
+        shown.overlay == overlay && shown.still == still)
         return;
     View view;
     view.scale = glm::dvec2(editor.view.zoom);
@@ -38,7 +39,8 @@ void update_texture(App& app, glm::ivec2 size) {
     view.width = size.x;
     view.height = size.y;
     const bool new_mesh = shown.mesh_version != editor.deformation.mesh_version;
-    const bool new_positions = new_mesh || shown.version != editor.deformation.version;
+    const bool new_positions =
+        new_mesh || shown.version != editor.deformation.version || shown.still != still;
     const bool new_overlay = new_positions || !(shown.overlay == overlay);
     // Kept before the drawing: where it fails, it is tried again only when something has changed.
     const GLuint texture = shown.texture;
@@ -49,11 +51,12 @@ void update_texture(App& app, glm::ivec2 size) {
              size,
              editor.show_mesh,
              app.theme.is_light,
+             still,
              overlay,
              texture};
     try {
         if (new_mesh) app.renderer->set_mesh(mesh_of(editor.deformation));
-        if (new_positions) app.renderer->set_positions(editor.deformation.now, editor.deformation.moved);
+        if (new_positions) app.renderer->set_positions(shown_positions(editor), editor.deformation.moved);
         if (new_overlay) app.renderer->set_overlay(overlay_vertices(editor, overlay), overlay_style(overlay));
         app.renderer->draw(view, 1);
         shown.texture =
@@ -71,7 +74,7 @@ void look_under_pointer(App& app) {
         editor.deformation.binding && editor.deformation.source.picture == editor.document.picture;
     if (!editor.pointer || !shown) return;
     app.under =
-        locate(mesh_of(editor.deformation), editor.deformation.now, to_image(editor.view, *editor.pointer));
+        locate(mesh_of(editor.deformation), shown_positions(editor), to_image(editor.view, *editor.pointer));
     if (app.under) app.shares = shares_at(editor.deformation, *app.under);
 }
 

@@ -3,9 +3,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "model/shape_laplacian.h"
 
@@ -63,6 +66,35 @@ std::array<double, 3> tie_stiffness(const Shape& shape, const Place& place) {
             b2 / (first * b0 + second * b1)};
 }
 
+/// The grid vertices of the kept cells that hang together within `radius` pixels of the place, with their
+/// distances.
+std::vector<std::pair<std::uint32_t, double>> around(const Shape& shape, const Place& place, double radius) {
+    std::vector<std::pair<std::uint32_t, double>> found;
+    std::vector<glm::ivec2> front;
+    std::set<std::pair<int, int>> seen;
+    const auto visit = [&](int column, int row) {
+        const glm::dvec2 least = glm::dvec2(column, row) * shape.cell;
+        const glm::dvec2 nearest = glm::clamp(place.at, least, least + shape.cell);
+        if (!shape.has_cell(column, row) || glm::distance(nearest, place.at) > radius) return;
+        if (seen.emplace(column, row).second) front.emplace_back(column, row);
+    };
+    for (const int column : {place.column - int(place.on_vertex), place.column})
+        for (const int row : {place.row - int(place.on_vertex), place.row}) visit(column, row);
+    while (!front.empty()) {
+        const glm::ivec2 cell = front.back();
+        front.pop_back();
+        for (const int x : {cell.x, cell.x + 1})
+            for (const int y : {cell.y, cell.y + 1})
+                if (const double d = glm::distance(glm::dvec2(x, y) * shape.cell, place.at); d < radius)
+                    found.emplace_back(shape.grid[shape.crossing(x, y)], d);
+        visit(cell.x - 1, cell.y), visit(cell.x + 1, cell.y);
+        visit(cell.x, cell.y - 1), visit(cell.x, cell.y + 1);
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
+
 Ties tie_down(const Shape& shape, std::span<const Place> places) {
     constexpr double too_loose = 1e-9;  // of the grid's own stiffness: no tie at all
     Ties ties;
@@ -79,6 +111,17 @@ Ties tie_down(const Shape& shape, std::span<const Place> places) {
         for (std::size_t k = 0; k < 3; ++k)
             if (stiffness[k] > too_loose) add(p, places[p].corners[k], stiffness[k]);
     }
+    // A point alone would stand out of its surroundings like a thorn, the more so the finer the grid. So what
+    // is in its core is held too, ever more loosely along the core's rim, a cell wide, so that nothing jumps
+    // as it moves.
+    const double rim = std::max(shape.cell.x, shape.cell.y);
+    for (std::size_t p = 0; p < places.size(); ++p)
+        for (const auto& [vertex, distance] : around(shape, places[p], places[p].core)) {
+            const double part = (places[p].core - distance) / rim;  // 0 at the rim's outside, 1 at its inside
+            const double stiffness = part >= 1 ? fixed : part / (1 - part);
+            if (!(places[p].on_vertex && vertex == places[p].corners[0]) && stiffness > too_loose)
+                add(p, vertex, stiffness);
+        }
     std::sort(ties.vertices.begin(), ties.vertices.end());
     ties.vertices.erase(std::unique(ties.vertices.begin(), ties.vertices.end()), ties.vertices.end());
     ties.stiffness.assign(ties.vertices.size(), 0.0);

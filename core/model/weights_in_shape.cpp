@@ -102,7 +102,11 @@ std::vector<Place> places_of(const WeightInput& input, const Shape& shape) {
             places.push_back(vertex < shape.vertices ? place_on_vertex(input, shape, vertex)
                                                      : place_in_cell(input, shape, rest));
         places[found->second].probes.push_back(i);
+        places[found->second].core = std::max(places[found->second].core, input.probes[i].radius / 6);
     }
+    for (Place& place : places)
+        for (const Place& other : places)
+            if (&other != &place) place.core = std::min(place.core, 0.4 * glm::distance(place.at, other.at));
     return places;
 }
 

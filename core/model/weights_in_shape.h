@@ -50,6 +50,9 @@ struct Place {
     bool below = false;
     int island = 0;
     std::vector<std::size_t> probes;  ///< that sit here
+    /// Image pixels: within it, along the shape, the harmonic weights are the place's own. A sixth of the
+    /// widest reach of its probes, and at most two fifths of the way to the nearest other place.
+    double core = 0;
 };
 
 /// A probe that is not on the mesh sits on the nearest vertex of the grid that is no probe's anchor (where

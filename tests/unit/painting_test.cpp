@@ -82,6 +82,24 @@ TEST_F(PaintingTest, StrokesFallWhereThePictureIsSeen) {
     EXPECT_EQ(paint_at(0, {150, 190}).coverage, 0);
 }
 
+TEST_F(PaintingTest, UnderShownWeightsThePictureStandsStillWhileItIsPainted) {
+    probe(0).now = {100, 200};
+    commit(editor, "move");
+    refresh(editor);
+    const std::vector<glm::vec2> before = editor.deformation.now;
+    press(editor, {.at = on_canvas({200, 150})});
+    move(editor, {.at = on_canvas({205, 150})});
+    refresh(editor);
+    EXPECT_NE(editor.deformation.now, before);
+    const auto shown = shown_positions(editor);
+    EXPECT_TRUE(std::equal(shown.begin(), shown.end(), before.begin(), before.end()));
+    release(editor, {.at = on_canvas({205, 150})});
+    EXPECT_EQ(shown_positions(editor).data(), editor.deformation.now.data());
+    editor.shown_weights = ShownWeights::none;
+    press(editor, {.at = on_canvas({250, 150})});
+    EXPECT_EQ(shown_positions(editor).data(), editor.deformation.now.data());
+}
+
 TEST_F(PaintingTest, CtrlPaintsTheOppositeAndErasingEverythingLeavesNothing) {
     editor.brush.value = 0.75;
     click({100, 100}, {.ctrl = true});

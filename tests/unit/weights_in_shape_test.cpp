@@ -30,6 +30,7 @@ struct Scene {
         for (const glm::dvec2 rest : rests) {
             Probe probe;
             probe.rest = probe.now = rest;
+            probe.radius = 0.01;  // points, but where a test says otherwise
             probes.push_back(probe);
         }
         Image image;
@@ -142,6 +143,38 @@ TEST(Harmonic, FallsOffLikeTheLogarithmWithinARing) {
             << r;
 }
 
+TEST(Harmonic, IsTheProbesOwnWithinItsCore) {
+    // Two fingers of two cells with a gap of one between them, joined at the bottom; a reach of 180 has a
+    // core of 30.
+    auto cells = whole_grid(5, 20);
+    for (int row = 0; row < 18; ++row) cells[std::size_t(row)][2] = '.';
+    Scene scene(cells, {{12, 52}, {43, 181}});
+    for (Probe& probe : scene.probes) probe.radius = 180;
+    const Table table = harmonic_table(scene.input());
+    for (int row = 0; row <= 20; ++row)
+        for (int column = 0; column <= 5; ++column) {
+            const double d = std::hypot(column * cell - 12, row * cell - 52);
+            if (column <= 2 && d < 30 - cell) {  // the rim is a cell wide
+                EXPECT_NEAR(share(table, 2, scene.at(column, row), 0), 1, 1e-9) << column << ' ' << row;
+            } else if (d > 30) {
+                EXPECT_LT(share(table, 2, scene.at(column, row), 0), 1) << column << ' ' << row;
+            }
+            // As near, but across the gap.
+            if (column >= 3 && row < 17) {
+                EXPECT_LT(share(table, 2, scene.at(column, row), 0), 0.3) << column << ' ' << row;
+            }
+        }
+}
+
+TEST(Harmonic, CoresOfProbesSideBySideDoNotMeet) {
+    Scene scene(whole_grid(20, 20), {{95, 100}, {105, 100}});
+    for (Probe& probe : scene.probes) probe.radius = 600;
+    const Table table = harmonic_table(scene.input());
+    for (int row = 0; row <= 20; ++row)                                 // as far from either
+        EXPECT_NEAR(share(table, 2, scene.at(10, row), 0), 0.5, 1e-6);  // a float
+    EXPECT_GT(share(table, 2, scene.at(9, 10), 0), 0.5);
+}
+
 TEST(Harmonic, KeepsTheMaximumPrincipleAndSumsToOne) {
     expect_always("no share is above all of its neighbours'", [] {
         const auto scene = any_scene(6);
@@ -252,6 +285,7 @@ TEST(Geodesic, GoesRoundAnObstacle) {
 TEST(Geodesic, IsRadiusOverDistanceToTheExponent) {
     Scene scene(whole_grid(9, 1), {{0, 5}, {90, 5}});
     scene.probes[0].radius = 50;
+    scene.probes[1].radius = 100;
     const std::size_t v = scene.at(3, 0);
     for (const double exponent : {1.0, 2.0, 3.5}) {
         const Table table = geodesic_table(scene.input(exponent));
