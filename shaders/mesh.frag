@@ -51,10 +51,13 @@ vec3 overlaid() {
     vec3 colour = heat == 1 ? mix(heat_colours[stop], heat_colours[stop + 1], at - float(stop)) : shade.rgb;
     float tenths = shade.a * 10.0, step = fwidth(tenths);
     float off = abs(fract(tenths - 0.5) - 0.5);  // from the nearest whole tenth
+    // Nothing ends at 0 and 1: a line there would only show where the mesh is cut.
+    float tenth = round(tenths);
+    bool drawn = iso_lines == 1 && tenth > 0.5 && tenth < 9.5;
     // White on dark and dark on light, about a pixel wide; where the value is flat there is no line.
     vec3 ink = dot(colour, vec3(0.3, 0.6, 0.1)) > 0.5 ? vec3(0.05) : vec3(1.0);
     float line = step > 1e-5 ? 1.0 - smoothstep(0.5, 1.3, off / step) : 0.0;
-    return mix(colour, ink, iso_lines == 1 ? 0.8 * line : 0.0);
+    return mix(colour, ink, drawn ? 0.8 * line : 0.0);
 }
 #endif
 

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "cli/commands.h"
+
 namespace probewarp {
 
 namespace {
@@ -73,6 +75,43 @@ std::optional<Colour> parse_colour(const std::string& text) {
             return Colour{std::uint8_t(value >> 16), std::uint8_t(value >> 8), std::uint8_t(value)};
     }
     throw UsageError(fmt::format("--background {}: expected #rrggbb, white, black or none", text));
+}
+
+void apply(const BindingOptions& o, Document& document) {
+    for (const std::string& text : o.probes) document.probes.push_back(parse_probe(text, document));
+    if (o.mesh) document.mesh.cells = *o.mesh;
+    if (!o.alpha_threshold.empty()) {
+        document.mesh.from_alpha = o.alpha_threshold != "none";
+        if (document.mesh.from_alpha) document.mesh.threshold = std::stoi(o.alpha_threshold);
+    }
+    if (o.alpha_margin) document.mesh.margin = *o.alpha_margin;
+    if (!o.weights.empty()) document.weights.scheme = o.weights;
+    if (o.exponent) document.weights.exponent = *o.exponent;
+    if (o.falloff) document.weights.falloff = *o.falloff;
+    if (o.most) document.weights.most = *o.most;
+    check_size(document);
+}
+
+std::optional<std::size_t> find_probe_named(const Document& document, const std::string& name) {
+    const auto found = std::ranges::find(document.probes, name, &Probe::name);
+    if (found != document.probes.end()) return std::size_t(found - document.probes.begin());
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (error != std::errc() || end != name.data() + name.size()) return {};
+    if (number < 1 || number > document.probes.size()) return {};
+    return number - 1;
+}
+
+std::size_t probe_named(const Document& document, const std::string& name, const std::string& option) {
+    if (const auto found = find_probe_named(document, name)) return *found;
+    constexpr std::size_t most_listed = 100;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(document.probes.size(), most_listed); ++i)
+        names += (i == 0 ? "" : ", ") + document.probes[i].name;
+    if (document.probes.size() > most_listed) names += ", ...";
+    throw UsageError(fmt::format(
+        "{} {}: {}", option, name,
+        names.empty() ? "there are no probes" : "there is no such probe; expected one of " + names));
 }
 
 }  // namespace probewarp

@@ -10,6 +10,8 @@
 
 namespace probewarp {
 
+struct BindingOptions;
+
 /// What the person typed cannot be understood: exit code 2.
 struct UsageError : Error {
     using Error::Error;
@@ -23,5 +25,15 @@ std::array<int, 2> parse_size(const std::string& text);
 
 /// "#rrggbb", "#rgb", "white", "black"; "none" is empty. Throws UsageError.
 std::optional<Colour> parse_colour(const std::string& text);
+
+/// Throws UsageError for a probe that cannot be understood, Error where the weights would be too many.
+void apply(const BindingOptions& options, Document& document);
+
+/// The place in the document of the probe of that name, or else of that number, from 1 in the probes' order;
+/// empty where there is none.
+std::optional<std::size_t> find_probe_named(const Document& document, const std::string& name);
+
+/// Likewise, but throws UsageError, which begins with `option` and lists the names.
+std::size_t probe_named(const Document& document, const std::string& name, const std::string& option);
 
 }  // namespace probewarp

@@ -18,8 +18,6 @@ namespace probewarp {
 
 namespace {
 
-constexpr int max_most = 10000;  // as many probes as a project may hold
-
 /// The names of a table's rows: "dlb, spiral".
 template <class Rows>
 std::vector<std::string> names(const Rows& rows) {

@@ -20,13 +20,6 @@ struct BindingOptions {
     std::optional<int> most;
 };
 
-/// Throws UsageError for a probe that cannot be understood, Error where the weights would be too many.
-void apply(const BindingOptions& options, Document& document);
-
-/// The place in the document of the probe of that name, or else of that number, from 1 in the probes' order.
-/// Throws UsageError, which begins with `option` and lists the names.
-std::size_t probe_named(const Document& document, const std::string& name, const std::string& option);
-
 struct RenderOptions : BindingOptions {
     std::string input, output;
     std::string probes_csv;  ///< of the iPad program; empty: none

@@ -54,15 +54,22 @@ void set_paint(Editor& editor, PaintPtr paint, const char* what) {
     commit(editor, what + (" " + probe.name));
 }
 
-void mirror_paint(Editor& editor, Side from) {
+/// The probe's paint and its counterpart's become each other's mirror images.
+void mirror_paint(Editor& editor, Side side) {
     const MirrorAxis axis = mirror_axis(editor);
     const std::size_t probe = chosen_place(editor), other = counterpart(editor.document, probe, axis);
     add_task(editor, "Mirror " + editor.document.probes[probe].name,
-             [probe, other, axis, from](const Deformation& deformation) {
+             [probe, other, axis, side](const Deformation& deformation) {
                  Document document = deformation.source;
                  const PictureFrame frame = frame_of(document.picture->image);
-                 const PaintMap both = mirrored_paint(map_of(document, probe), frame, axis, from);
-                 document.probes[other].paint = std::make_shared<const PaintMap>(both);
+                 const PaintMap own = map_of(document, probe), others = map_of(document, other);
+                 const auto mirror = [&](std::size_t onto, const PaintMap& old, const PaintMap& from) {
+                     PaintMap map = mirrored_paint(old, from, frame, axis, side);
+                     document.probes[onto].paint =
+                         is_blank(map) ? nullptr : std::make_shared<const PaintMap>(std::move(map));
+                 };
+                 mirror(probe, own, others);
+                 if (other != probe) mirror(other, others, own);
                  return document;
              });
 }

@@ -90,10 +90,12 @@ struct App {
     Samples samples;
     bool modal = false;  ///< a dialog is open: the canvas and the shortcuts rest
     bool probes_open = true, probe_open = true, brush_open = true, deformation_open = true,
-         weights_open = true;
+         weights_open = true, limits_open = false;
     double busy_since = -1;  ///< seconds of ImGui's clock; negative while nothing blocks
     ImGuiID field = 0;       ///< the item of the panel field being edited
     int renaming = 0;        ///< probe id
+    int typed_cells = 0;     ///< of the mesh, while they are being typed
+    bool typing_cells = false;
     std::string new_name;
     std::string field_label;  ///< of the panel field being edited
     bool quit = false;

@@ -68,10 +68,10 @@ void draw_brush_section(App& app) {
     percent_row(app, "Hardness", brush.hardness, 0);
     percent_row(app, "Spacing", brush.spacing, 1);
     row_label(app, "", label_width);
-    ImGui::Checkbox("Build up", &brush.build_up);
+    check_box(app, "Build up", brush.build_up);
     tooltip("Dabs of one stroke pile up");
     ImGui::SameLine(0, app.px(12));
-    ImGui::Checkbox("Mirror", &editor.mirror);
+    check_box(app, "Mirror", editor.mirror);
     tooltip("Strokes are painted on both sides of the axis (X), onto the probe that mirrors the chosen one");
     if (!editor.mirror) return;
     MirrorAxis axis = mirror_axis(editor);
@@ -152,7 +152,7 @@ void draw_weights_section(App& app) {
     if (slider_field(app, "##opacity", opacity, "%", ImGui::GetContentRegionAvail().x, 0, 100))
         editor.weights_opacity = float(opacity / 100);
     row_label(app, "", label_width);
-    ImGui::Checkbox("Iso-lines", &editor.iso_lines);
+    check_box(app, "Iso-lines", editor.iso_lines);
     tooltip("A line at every tenth of the weight (I)");
 }
 

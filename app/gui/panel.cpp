@@ -170,11 +170,13 @@ void method_combo(App& app, const char* label, std::string& name, const Rows& ro
         std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.name == name; });
     ImGui::PushID(label);
     if (begin_combo(app, "##method", std::string(chosen->label).c_str(), ImGui::GetContentRegionAvail().x)) {
-        for (const auto& row : rows)
+        for (const auto& row : rows) {
             if (ImGui::Selectable(std::string(row.label).c_str(), row.name == name)) {
                 name = std::string(row.name);
                 edit_at_once(app, step);
             }
+            if constexpr (requires { row.when; }) tooltip(std::string(row.when).c_str());
+        }
         ImGui::EndCombo();
     }
     ImGui::PopID();
@@ -204,36 +206,14 @@ void mesh_slider(App& app) {
     if (moved) mesh.cells = int(std::lround(least + (most - least) * part * part * part));
     ImGui::SameLine(0, app.px(8));
     ImGui::SetNextItemWidth(app.px(40));
-    int typed = mesh.cells;
-    const bool entered = ImGui::InputInt("##cells", &typed, 0, 0);
+    // Taken when it is whole: on the way to 1000 nobody wants meshes of 1 and 10 cells.
+    if (!app.typing_cells) app.typed_cells = mesh.cells;
+    ImGui::InputInt("##cells", &app.typed_cells, 0, 0);
+    app.typing_cells = ImGui::IsItemActive();
     is_step(app, "Mesh density");
-    if (entered) mesh.cells = std::clamp(typed, min_cells, max_cells);
+    const bool entered = ImGui::IsItemDeactivatedAfterEdit();
+    if (entered) mesh.cells = std::clamp(app.typed_cells, min_cells, max_cells);
     if (moved || entered) set_mesh(app, mesh);
-}
-
-/// How the mesh follows the picture's transparency, and what came of it.
-void outline_rows(App& app) {
-    Document& document = app.editor.document;
-    row_label(app, "Outline", 68);
-    MeshSettings mesh = document.mesh;
-    if (ImGui::Checkbox("Only where there is picture", &mesh.from_alpha)) {
-        set_mesh(app, mesh);
-        edit_at_once(app, "Outline");
-    }
-    tooltip("Leaves out the cells without a visible pixel, so that limbs that do not touch are not joined");
-    if (!mesh.from_alpha) return;
-    row_label(app, "", 68);
-    const float width = (ImGui::GetContentRegionAvail().x - app.px(8)) / 2;
-    double threshold = mesh.threshold;
-    if (number_field(app, "##threshold", threshold, "alpha >", width, 0.25, 0, 254)) {
-        document.mesh.threshold = int(std::lround(threshold));
-    }
-    is_step(app, "Outline threshold");
-    tooltip("Pixels with more alpha than this (0 to 255) are visible");
-    ImGui::SameLine(0, app.px(8));
-    number_field(app, "##margin", document.mesh.margin, "px margin", width, 0.25, 0, max_mesh_margin);
-    is_step(app, "Outline margin");
-    tooltip("Cells that come this near to a visible pixel stay");
 }
 
 std::string islands_text(const Binding& binding) {
@@ -245,51 +225,74 @@ std::string islands_text(const Binding& binding) {
     return text + ".";
 }
 
-/// What the weights keep to.
-void limit_rows(App& app) {
-    Document& document = app.editor.document;
-    const WeightScheme& scheme = *find_weight_scheme(document.weights.scheme);
-    const float width = (ImGui::GetContentRegionAvail().x - app.px(68) - app.px(8)) / 2;
-    row_label(app, "Limits", 68);
-    number_field(app, "##falloff", document.weights.falloff,
-                 document.weights.falloff > 0 ? "× reach" : "no falloff", width, 0.02, 0, max_falloff);
-    is_step(app, "Falloff limit");
-    tooltip("How many reaches away a probe's weight fades to nothing; 0: nowhere");
-    ImGui::SameLine(0, app.px(8));
-    const auto text = [](int most) {
-        return most == 0 ? std::string("All probes") : fmt::format("{} probes", most);
-    };
-    if (begin_combo(app, "##most", text(document.weights.most).c_str(), width)) {
-        for (const int most : {0, 4, 8})
-            if (ImGui::Selectable(text(most).c_str(), most == document.weights.most)) {
-                document.weights.most = most;
-                edit_at_once(app, "Probes per vertex");
-            }
-        ImGui::EndCombo();
-    }
-    tooltip("The heaviest probes that a vertex may follow");
-    if (!scheme.has_exponent) return;
-    row_label(app, "Exponent", 68);
-    number_field(app, "##exponent", document.weights.exponent, "", ImGui::GetContentRegionAvail().x, 0.01,
-                 min_exponent, max_exponent);
-    is_step(app, "Exponent");
-    tooltip("How quickly weights fall with distance; 2 is usual");
-}
-
 void draw_deformation(App& app) {
     begin_section_gap(app);
     if (!section(app, "deformation", "Deformation", app.deformation_open)) return;
     method_combo(app, "Blend", app.editor.document.blend, blend_methods(), "Blend");
     method_combo(app, "Weights", app.editor.document.weights.scheme, weight_schemes(), "Weights");
-    limit_rows(app);
     mesh_slider(app);
-    outline_rows(app);
     if (!app.editor.deformation.binding) return;
     const std::string islands = islands_text(*app.editor.deformation.binding);
     if (islands.empty()) return;
     ImGui::PushTextWrapPos(0);
     ImGui::TextDisabled("%s", islands.c_str());
     ImGui::PopTextWrapPos();
+}
+
+/// How the mesh follows the picture's transparency.
+void outline_rows(App& app) {
+    MeshSettings& mesh = app.editor.document.mesh;
+    row_label(app, "Outline", 76);
+    if (check_box(app, "Only where there is picture", mesh.from_alpha)) edit_at_once(app, "Outline");
+    tooltip("Leaves out the cells without a visible pixel, so that limbs that do not touch are not joined");
+    ImGui::BeginDisabled(!mesh.from_alpha);
+    const float width = ImGui::GetContentRegionAvail().x - app.px(76);
+    row_label(app, "Threshold", 76);
+    double threshold = mesh.threshold;
+    if (number_field(app, "##threshold", threshold, "of 255", width, 0.25, 0, 254))
+        mesh.threshold = int(std::lround(threshold));
+    is_step(app, "Outline threshold");
+    tooltip("Pixels with more alpha than this are visible");
+    row_label(app, "Margin", 76);
+    number_field(app, "##margin", mesh.margin, "px", width, 0.25, 0, max_mesh_margin);
+    is_step(app, "Outline margin");
+    tooltip("Cells that come this near to a visible pixel stay");
+    ImGui::EndDisabled();
+}
+
+/// What the weights and the mesh keep to.
+void draw_limits(App& app) {
+    begin_section_gap(app);
+    if (!section(app, "limits", "Limits and outline", app.limits_open)) return;
+    WeightSettings& weights = app.editor.document.weights;
+    const float width = ImGui::GetContentRegionAvail().x - app.px(76);
+    const bool has_exponent = find_weight_scheme(weights.scheme)->has_exponent;
+    ImGui::BeginDisabled(!has_exponent);
+    row_label(app, "Exponent", 76);
+    number_field(app, "##exponent", weights.exponent, "", width, 0.01, min_exponent, max_exponent);
+    is_step(app, "Exponent");
+    tooltip(has_exponent ? "How quickly weights fall with distance; 2 is usual"
+                         : "Only weights by distance have an exponent");
+    ImGui::EndDisabled();
+    row_label(app, "Falloff", 76);
+    number_field(app, "##falloff", weights.falloff, weights.falloff > 0 ? "× reach" : "none", width, 0.02, 0,
+                 max_falloff);
+    is_step(app, "Falloff limit");
+    tooltip("How many reaches away a probe's weight fades to nothing; 0: nowhere");
+    row_label(app, "Follows", 76);
+    const auto text = [](int most) {
+        return most == 0 ? std::string("All probes") : fmt::format("The {} heaviest", most);
+    };
+    if (begin_combo(app, "##most", text(weights.most).c_str(), width)) {
+        for (const int most : {0, 4, 8})
+            if (ImGui::Selectable(text(most).c_str(), most == weights.most)) {
+                weights.most = most;
+                edit_at_once(app, "Probes per vertex");
+            }
+        ImGui::EndCombo();
+    }
+    tooltip("How many probes a vertex may follow");
+    outline_rows(app);
 }
 
 }  // namespace
@@ -315,6 +318,7 @@ void draw_panel(App& app) {
         draw_chosen_probe(app);
     draw_deformation(app);
     draw_weights_section(app);
+    draw_limits(app);
     // Leaving a field makes what it did a step, however it was left.
     if (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field &&
         ImGui::GetActiveID() != app.field)

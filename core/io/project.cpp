@@ -254,7 +254,7 @@ WeightSettings weights_from(Fields& fields, int format) {
     if (!find_weight_scheme(weights.scheme)) throw inner.wrong("scheme", "a weight scheme that is known");
     weights.exponent = inner.number("exponent", min_exponent, max_exponent);
     weights.falloff = inner.number("falloff", 0, max_falloff);
-    weights.most = inner.whole("most", 0, int(max_probes));
+    weights.most = inner.whole("most", 0, max_most);
     inner.finish();
     return weights;
 }

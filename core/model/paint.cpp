@@ -37,26 +37,49 @@ Paint texel(const PaintMap& map, int x, int y) {
     return texel(tile.get(), TileRect::at(x, y));
 }
 
-Paint sample(const PaintMap& map, glm::dvec2 at) {
+std::optional<Taps> taps_at(const PaintMap& map, glm::dvec2 at) {
     if (!(at.x >= 0 && at.y >= 0 && at.x <= map.width && at.y <= map.height)) return {};
     if (map.width < 1 || map.height < 1) return {};
     const double x = std::clamp(at.x - 0.5, 0.0, map.width - 1.0);
     const double y = std::clamp(at.y - 0.5, 0.0, map.height - 1.0);
     const int left = int(x), top = int(y);
-    const int right = std::min(left + 1, map.width - 1), bottom = std::min(top + 1, map.height - 1);
-    // In double the products of floats are exact, and so is their quotient where only one texel counts.
-    double coverage = 0, covered_value = 0;
-    const auto add = [&](int column, int row, double share) {
-        const Paint paint = texel(map, column, row);
-        coverage += share * paint.coverage;
-        covered_value += share * (double(paint.coverage) * paint.value);
-    };
-    add(left, top, (1 - (x - left)) * (1 - (y - top)));
-    add(right, top, (x - left) * (1 - (y - top)));
-    add(left, bottom, (1 - (x - left)) * (y - top));
-    add(right, bottom, (x - left) * (y - top));
+    const double right_part = x - left, lower_part = y - top;
+    const std::array<int, 2> columns{left, std::min(left + 1, map.width - 1)};
+    const std::array<int, 2> rows{top, std::min(top + 1, map.height - 1)};
+    const int across = (map.width + paint_tile_side - 1) / paint_tile_side;
+    Taps taps;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const int column = columns[k % 2], row = rows[k / 2];
+        taps.tile[k] = std::size_t(row / paint_tile_side * across + column / paint_tile_side);
+        taps.at[k] = TileRect::at(column, row);
+        taps.weight[k] = (k % 2 ? right_part : 1 - right_part) * (k / 2 ? lower_part : 1 - lower_part);
+    }
+    return taps;
+}
+
+Paint sample(const PaintMap& map, const Taps& taps) {
+    // In double the products of whole numbers are exact, and so is their quotient where only one texel
+    // counts.
+    double coverage = 0, covered_value = 0;  // in steps of 1/65535, and of its square
+    for (std::size_t k = 0; k < 4; ++k) {
+        const PaintTile* const tile = map.tiles[taps.tile[k]].get();
+        if (!tile) continue;
+        const double here = taps.weight[k] * tile->coverage[taps.at[k]];
+        coverage += here;
+        covered_value += here * tile->value[taps.at[k]];
+    }
     if (!(coverage > 0)) return {};
-    return {float(std::min(covered_value / coverage, 1.0)), float(std::min(coverage, 1.0))};
+    constexpr double one = paint_one;
+    return {float(std::min(covered_value / (coverage * one), 1.0)), float(std::min(coverage / one, 1.0))};
+}
+
+Paint sample(const PaintMap& map, glm::dvec2 at) {
+    const auto taps = taps_at(map, at);
+    return taps ? sample(map, *taps) : Paint{};
+}
+
+bool same_texels(const PaintMap& a, const PaintMap& b) {
+    return a.width == b.width && a.height == b.height && a.extent == b.extent;
 }
 
 bool is_blank(const PaintMap& map) {

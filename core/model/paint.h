@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -75,6 +76,16 @@ inline Paint texel(const PaintTile* tile, std::size_t at) {
 /// One texel. Requires it inside. Exact: n / 65535 in float.
 Paint texel(const PaintMap& map, int x, int y);
 
+/// The four texels that a place of a map looks at, for several maps with the same texels.
+struct Taps {
+    std::array<std::size_t, 4> tile{}, at{};  ///< which tile, and where in it
+    std::array<double, 4> weight{};           ///< sums to 1
+};
+
+/// `at`: texels. Empty outside the map.
+std::optional<Taps> taps_at(const PaintMap& map, glm::dvec2 at);
+Paint sample(const PaintMap& map, const Taps& taps);
+
 /// Bilinear, at `at` texels: the coverage is the mean, the value the mean weighted by coverage. Beyond the
 /// outermost texel centres but inside the map the outermost texels continue; outside the map there is no
 /// paint. At a texel's centre exactly that texel.
@@ -86,6 +97,9 @@ Paint sample(const PaintMap& map, glm::dvec2 at);
 /// nothing changed stays the same tile.
 template <class Edit>
 void edit_texels(PaintMap& map, int left, int top, int right, int bottom, Edit edit);
+
+/// Whether two maps have the same texels over the same rectangle.
+bool same_texels(const PaintMap& a, const PaintMap& b);
 
 /// Whether there is any coverage.
 bool is_blank(const PaintMap& map);

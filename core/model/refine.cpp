@@ -64,10 +64,6 @@ void merge(std::vector<VertexRun>& runs) {
     if (!runs.empty()) runs.resize(last + 1);
 }
 
-bool same_grid(const PaintMap& a, const PaintMap& b) {
-    return a.width == b.width && a.height == b.height && a.extent == b.extent;
-}
-
 }  // namespace
 
 std::vector<VertexRun> repainted(const Document& before, const Document& after, const Mesh& mesh) {
@@ -77,7 +73,7 @@ std::vector<VertexRun> repainted(const Document& before, const Document& after, 
     for (std::size_t i = 0; i < after.probes.size(); ++i) {
         const PaintMap *from = before.probes[i].paint.get(), *to = after.probes[i].paint.get();
         if (from == to) continue;
-        if (from && to && !same_grid(*from, *to)) return {{0, mesh.rest.size()}};
+        if (from && to && !same_texels(*from, *to)) return {{0, mesh.rest.size()}};
         add_differences(from, to, frame, mesh, runs);
     }
     if (runs.empty()) return runs;

@@ -20,6 +20,7 @@ inline constexpr std::size_t max_weights = std::size_t{1} << 26;
 
 inline constexpr double default_exponent = 2, min_exponent = 0.5, max_exponent = 8;
 inline constexpr double max_falloff = 1000;
+inline constexpr int max_most = 10000;
 
 /// What a document says about its weights.
 struct WeightSettings {

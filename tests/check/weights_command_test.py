@@ -3,69 +3,21 @@ bilinearly, and what is wrong is said in one sentence. Run: weights_command_test
 
 import json
 import os
+import pathlib
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 import zipfile
-import zlib
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
+from png_file import read_png, write_png
 
 PROGRAM = None
 IMAGES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "images")
 GINGERBREAD = os.path.join(IMAGES, "gingerbread.probewarp")
 ONE = 65535
-
-
-def write_png(path, width, height, samples, bits=16, colour=0):
-    """samples: height x width x channels, row-major, whole numbers."""
-    channels = {0: 1, 2: 3, 4: 2, 6: 4}[colour]
-    rows = bytearray()
-    for y in range(height):
-        rows.append(0)
-        for sample in samples[y * width * channels:(y + 1) * width * channels]:
-            rows += sample.to_bytes(bits // 8, "big")
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, colour, 0, 0, 0)) +
-                   chunk(b"IDAT", zlib.compress(bytes(rows))) + chunk(b"IEND", b""))
-    return path
-
-
-def read_png(path):
-    """(width, height, bits, colour, samples)"""
-    with open(path, "rb") as file:
-        data = file.read()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n", path
-    at, packed, header = 8, b"", None
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        if kind == b"IHDR":
-            header = struct.unpack(">IIBBBBB", data[at + 8:at + 21])
-        elif kind == b"IDAT":
-            packed += data[at + 8:at + 8 + length]
-        at += 12 + length
-    width, height, bits, colour, _, _, interlaced = header
-    assert bits in (8, 16) and not interlaced, path
-    step = {0: 1, 2: 3, 4: 2, 6: 4}[colour] * bits // 8
-    raw, length, above, out = zlib.decompress(packed), width * step, None, bytearray()
-    for y in range(height):
-        kind, row = raw[y * (length + 1)], bytearray(raw[y * (length + 1) + 1:(y + 1) * (length + 1)])
-        above = above or bytearray(length)
-        for i in range(length if kind else 0):
-            a = row[i - step] if i >= step else 0
-            b, c = above[i], above[i - step] if i >= step else 0
-            p = a + b - c
-            paeth = min((a, b, c), key=lambda q: (abs(p - q), (a, b, c).index(q)))
-            row[i] = (row[i] + (0, a, b, (a + b) // 2, paeth)[kind]) & 255
-        out += row
-        above = row
-    samples = list(out) if bits == 8 else list(struct.unpack(f">{len(out) // 2}H", out))
-    return width, height, bits, colour, samples
 
 
 def grey(path):

@@ -10,11 +10,15 @@ import math
 import os
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 import time
 import unittest
 import zipfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
+from png_file import read_png, write_png
 
 options = None
 PATIENCE = 20  # seconds until something that must happen counts as not happening; a loaded machine is slow
@@ -109,12 +113,36 @@ class Desk:
         self.settle()
 
     def screenshot(self, name):
-        subprocess.run(["xwd", "-root", "-silent", "-out", str(self.home / f"{name}.xwd")], env=self.environment)
+        path = self.home / f"{name}.xwd"
+        subprocess.run(["xwd", "-root", "-silent", "-out", str(path)], env=self.environment)
+        return path
+
+    def seen(self, left, top, right, bottom):
+        """The screen's pixels in a rectangle, row by row."""
+        data = self.screenshot("seen").read_bytes()
+        header = struct.unpack(">25I", data[:100])
+        start, length, pixel = header[0] + 12 * header[19], header[12], header[11] // 8
+        return [data[start + y * length + left * pixel:start + y * length + right * pixel] for y in range(top, bottom)]
 
 
 def project_of(path):
     with zipfile.ZipFile(path) as archive:
         return json.loads(archive.read("project.json"))
+
+
+def covered_columns(path, member):
+    """Of the paint in a project: how many columns of texels have any coverage."""
+    with zipfile.ZipFile(path) as archive:
+        width, height, _, _, samples = read_png(archive.read(member))
+    return sum(any(samples[2 * (y * width + x) + 1] for y in range(height)) for x in range(width))
+
+
+def distance(point, a, b):
+    """From a point to the segment from a to b."""
+    way = b[0] - a[0], b[1] - a[1]
+    along = ((point[0] - a[0]) * way[0] + (point[1] - a[1]) * way[1]) / (way[0] ** 2 + way[1] ** 2)
+    along = min(max(along, 0), 1)
+    return math.dist(point, (a[0] + along * way[0], a[1] + along * way[1]))
 
 
 class WindowTest(unittest.TestCase):
@@ -319,6 +347,122 @@ class WindowTest(unittest.TestCase):
         before = ticks()
         time.sleep(3)
         self.assertLessEqual(ticks() - before, 1)  # a tick is 10 ms; one may fall in by the clock's grain
+
+    # A picture that says of each pixel where it was: red is x and green y, in 65535ths of the side.
+    RAMP = 300, 200
+    BRUSH = 300 / 16  # image pixels: the radius that the brush has on it at first
+    PATH = (150, 80), (150, 120)
+    WAY = 20, 12  # how far the second probe is moved
+
+    def open_ramp(self, *probes):
+        """A project with the ramp, shown at its own size."""
+        scratch = pathlib.Path(options.scratch)
+        scratch.mkdir(parents=True, exist_ok=True)
+        width, height = self.RAMP
+        samples = [s for y in range(height) for x in range(width)
+                   for s in (65535 * x // (width - 1), 65535 * y // (height - 1), 0)]
+        picture = write_png(scratch / "ramp.png", width, height, samples, 16, 2)
+        words = [word for probe in probes for word in ("--probe", probe)]
+        subprocess.run([options.program, "render", picture, *words, "-o", scratch / "ramp.probewarp"], check=True)
+        desk = self.desk(scratch / "ramp.probewarp")
+        desk.wait_title("ramp.probewarp – Probewarp")
+        desk.settle()
+        desk.corner = 48 + round((1280 - 48 - 308 - width) / 2), 32 + round((800 - 32 - 26 - height) / 2)
+        desk.at = lambda x, y: (desk.corner[0] + x, desk.corner[1] + y)
+        return desk
+
+    def take_brush(self, desk, probe):
+        """Takes the brush and chooses the probe that is at this place now."""
+        desk.key("b")
+        desk.ask("keydown", "alt", "mousemove", *desk.at(*probe), "sleep", "0.1", "click", "1", "sleep", "0.1",
+                 "keyup", "alt")
+        desk.settle()
+
+    def pixels(self, path):
+        """Of an exported ramp: each pixel's red, green, blue and perhaps alpha, row-major."""
+        width, height, bits, colour, samples = read_png(path)
+        self.assertEqual((width, height, bits), (*self.RAMP, 16))
+        step = {2: 3, 6: 4}[colour]
+        return [samples[i:i + step] for i in range(0, len(samples), step)]
+
+    def place(self, pixel):
+        """Where in the picture it was."""
+        return tuple(sample / 65535 * (side - 1) + 0.5 for sample, side in zip(pixel, self.RAMP))
+
+    def test_painting_changes_what_is_under_the_brush_and_nothing_else(self):
+        width, height = self.RAMP
+        desk = self.open_ramp("60,100", f"240,100:{240 + self.WAY[0]},{100 + self.WAY[1]}")
+        before = self.export(desk, "before.png")
+        self.take_brush(desk, (60, 100))
+        desk.drag([desk.at(150, y) for y in range(80, 121, 5)])
+        desk.wait_title("● ramp.probewarp – Probewarp")
+        painted = self.export(desk, "painted.png")
+        desk.key("ctrl+z")
+        desk.wait_title("ramp.probewarp – Probewarp")
+        self.assertEqual(self.export(desk, "undone.png").read_bytes(), before.read_bytes())
+        desk.key("ctrl+shift+z")
+        project = self.save(desk, "painted.probewarp")
+        self.assertEqual(self.render(project, desk.home / "same.png"), painted.read_bytes())
+        probes = project_of(project)["probes"]
+        self.assertEqual([probe["paint"] is None for probe in probes], [False, True])
+
+        # Translations blend to the mean by shares, so what is under the brush moves back by at most all the way.
+        old, new = self.pixels(before), self.pixels(painted)
+        swept = [[tuple(p[k] - part / 10 * self.WAY[k] for k in (0, 1)) for p in self.PATH] for part in range(11)]
+        cell = 3  # image pixels; two of them, as the picture is stretched, and a vertex moves the cells around it
+        changed = 0
+        for i, (was, now) in enumerate(zip(old, new)):
+            if was == now:
+                continue
+            changed += 1
+            pixel = i % width + 0.5, i // width + 0.5
+            self.assertLess(min(distance(pixel, *path) for path in swept), self.BRUSH + 2 * cell, pixel)
+        self.assertGreater(changed, 2 * self.BRUSH * 40)
+        # What was painted whole stays with the probe that does not move: it is where it was in the picture.
+        for y in range(85, 116, 5):
+            x, y = (int(k) for k in self.place(old[y * width + 150]))
+            pixel = x + 0.5, y + 0.5
+            self.assertGreater(math.dist(self.place(old[y * width + x]), pixel), 8)
+            # The dabs lie 2.8 pixels apart and the vertices 3: near a dab's centre, but not on it.
+            self.assertLess(math.dist(self.place(new[y * width + x]), pixel), 1.5)
+
+    def test_brackets_change_the_brush_and_escape_takes_a_stroke_back(self):
+        desk = self.open_ramp("60,100", "240,100")
+        clean = self.save(desk, "clean.probewarp").read_bytes()
+        self.take_brush(desk, (60, 100))
+        desk.drag([desk.at(150, y) for y in range(80, 121, 5)], release=False)
+        desk.key("Escape")
+        desk.ask("mouseup", "1")
+        desk.settle()
+        self.assertEqual(self.save(desk, "escaped.probewarp").read_bytes(), clean)
+
+        def dab(name):
+            desk.drag([desk.at(150, 100)] * 2)
+            project = self.save(desk, name)
+            columns = covered_columns(project, project_of(project)["probes"][0]["paint"]["file"])
+            desk.key("ctrl+z")
+            return columns
+
+        # A texel is a pixel here. The last of a dab is less than a 65535th.
+        self.assertAlmostEqual(dab("first.probewarp"), 2 * self.BRUSH, delta=1.5)
+        desk.ask("key", "--delay", "60", *["bracketright"] * 5)
+        desk.settle()
+        self.assertAlmostEqual(dab("larger.probewarp"), 2 * self.BRUSH * 1.15 ** 5, delta=1.5)
+        desk.ask("key", "--delay", "60", *["bracketleft"] * 8)
+        desk.settle()
+        self.assertAlmostEqual(dab("smaller.probewarp"), 2 * self.BRUSH / 1.15 ** 3, delta=1.5)
+
+    def test_w_shows_the_weights_and_hides_them(self):
+        desk = self.open_ramp("60,100", "240,100:250,110")
+        desk.ask("mousemove", *desk.at(60, 100), "sleep", "0.1", "click", "1")  # chooses the probe
+        desk.ask("mousemove", *desk.at(150, -60))
+        desk.settle()
+        rectangle = *desk.at(100, 60), *desk.at(200, 140)  # of the picture, between the probes
+        plain = desk.seen(*rectangle)
+        desk.key("w")
+        desk.wait(lambda: desk.seen(*rectangle) != plain, "the weights on the canvas")
+        desk.key("w")
+        desk.wait(lambda: desk.seen(*rectangle) == plain, "the picture without its weights")
 
     def test_scale_two(self):
         desk = self.open_sample(scale=2)
