@@ -57,7 +57,7 @@ std::optional<Taps> taps_at(const PaintMap& map, glm::dvec2 at) {
     return taps;
 }
 
-Paint sample(const PaintMap& map, const Taps& taps) {
+Paint sample_at(const PaintMap& map, const Taps& taps) {
     // In double the products of whole numbers are exact, and so is their quotient where only one texel
     // counts.
     double coverage = 0, covered_value = 0;  // in steps of 1/65535, and of its square
@@ -75,7 +75,7 @@ Paint sample(const PaintMap& map, const Taps& taps) {
 
 Paint sample(const PaintMap& map, glm::dvec2 at) {
     const auto taps = taps_at(map, at);
-    return taps ? sample(map, *taps) : Paint{};
+    return taps ? sample_at(map, *taps) : Paint{};
 }
 
 bool same_texels(const PaintMap& a, const PaintMap& b) {

@@ -84,7 +84,7 @@ struct Taps {
 
 /// `at`: texels. Empty outside the map.
 std::optional<Taps> taps_at(const PaintMap& map, glm::dvec2 at);
-Paint sample(const PaintMap& map, const Taps& taps);
+Paint sample_at(const PaintMap& map, const Taps& taps);
 
 /// Bilinear, at `at` texels: the coverage is the mean, the value the mean weighted by coverage. Beyond the
 /// outermost texel centres but inside the map the outermost texels continue; outside the map there is no

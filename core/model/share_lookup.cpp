@@ -85,7 +85,7 @@ bool ShareLookup::sample_paint(glm::dvec2 point) const {
     for (const auto& [grid, probes] : painted_) {
         const auto taps = taps_at(grid, to_texels(grid, frame_, point));
         for (const std::size_t i : probes) {
-            paint_[i] = taps ? sample(*deformation_.source.probes[i].paint, *taps) : Paint{};
+            paint_[i] = taps ? sample_at(*deformation_.source.probes[i].paint, *taps) : Paint{};
             covered = covered || paint_[i].coverage > 0;
         }
     }
