@@ -35,11 +35,12 @@ void start(Editor& editor, Document document, std::filesystem::path path, bool s
 }
 
 void refresh(Editor& editor) {
-    if (!has_picture(editor)) return;
+    if (!has_picture(editor) || defers_deformation(editor)) return;
     auto& deformation = editor.deformation;
     if (!editor.binds_elsewhere) return update(deformation, editor.document);
-    if (fits(deformation.binding.get(), editor.document))
-        pose(deformation, editor.document, deformation.binding);
+    auto binding = std::exchange(editor.next_binding, nullptr);
+    if (!fits(binding.get(), editor.document)) binding = deformation.binding;
+    if (fits(binding.get(), editor.document)) pose(deformation, editor.document, std::move(binding));
 }
 
 void commit(Editor& editor, std::string label) {

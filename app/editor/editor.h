@@ -110,6 +110,7 @@ struct Editor {
 
     /// The window works bindings out beside itself; without one refresh does, at once.
     bool binds_elsewhere = false;
+    std::shared_ptr<const Binding> next_binding;  ///< the newest from there; taken by the next refresh
 
     std::vector<Request> requests;  ///< taken and emptied by the window
     std::vector<Task> tasks;        ///< likewise

@@ -48,6 +48,10 @@ MirrorAxis mirror_axis(const Editor& editor);
 /// Where the axis is taken hold of, canvas pixels: above the picture's top edge.
 glm::dvec2 axis_grip(const Editor& editor);
 
+/// Whether the deformation may wait until the stroke ends: one of stiffness changes whole regions, and under
+/// shown weights the picture stands still anyway.
+bool defers_deformation(const Editor& editor);
+
 /// The brush's keys: brackets size it, digits set its strength. Returns whether the key meant something.
 bool press_brush_key(Editor& editor, int key);
 

@@ -37,6 +37,11 @@ std::span<const glm::vec2> shown_positions(const Editor& editor) {
     return still ? editor.gesture->stroke->still : editor.deformation.now;
 }
 
+bool defers_deformation(const Editor& editor) {
+    const PaintStroke* stroke = editor.gesture ? editor.gesture->stroke.get() : nullptr;
+    return stroke && stroke->layer.probe == 0 && !stroke->still.empty();
+}
+
 namespace {
 
 PaintPtr& paint_of_layer(Document& document, int probe) {

@@ -73,7 +73,8 @@ struct App {
     Shown shown;
     PicturePtr uploaded;  ///< the picture that the renderer holds
     double deform_milliseconds = 0;
-    std::unique_ptr<BindingJob> binding_job;      ///< null while none is under way
+    std::unique_ptr<BindingJob> binding_job;                  ///< null while none is under way
+    std::vector<std::unique_ptr<BindingJob>> abandoned_jobs;  ///< given up, and not yet at their end
     std::shared_ptr<const Binding> last_binding;  ///< whatever document it is of: the next one starts from it
     std::optional<Document> unbound;              ///< the document whose binding failed
     std::optional<MeshPoint> under;               ///< of the deformed mesh under the pointer

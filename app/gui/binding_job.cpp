@@ -33,14 +33,21 @@ bool finish(App& app, std::chrono::milliseconds patience) {
     try {
         auto binding = ended->result.get();
         app.last_binding = binding;
-        if (fits(binding.get(), app.editor.document))
-            pose(app.editor.deformation, app.editor.document, std::move(binding));
+        app.editor.next_binding = std::move(binding);
     } catch (const GivenUp&) {
     } catch (const std::exception& error) {
         app.unbound = ended->document;
         say(app, Tone::error, error.what());
     }
     return true;
+}
+
+/// Leaves the job to come to its end by itself. What it has of the last binding's cache it still uses, so the
+/// next job begins without.
+void abandon(App& app) {
+    app.binding_job->given_up = true;
+    app.abandoned_jobs.push_back(std::move(app.binding_job));
+    app.last_binding.reset();
 }
 
 bool wants_binding(const App& app) {
@@ -57,20 +64,23 @@ bool is_deformation_ready(const App& app) {
 
 void update_deformation(App& app) {
     Editor& editor = app.editor;
-    const auto before = Clock::now();
-    const unsigned long version = editor.deformation.version;
     if (app.binding_job) {
         // What was replaced meanwhile is not worth waiting for; a probe that is still being dragged is.
         const Document& bound = app.binding_job->document;
         if (bound.picture != editor.document.picture || !(bound.mesh == editor.document.mesh) ||
             !(bound.weights == editor.document.weights))
-            app.binding_job->given_up = true;
-        finish(app, 0ms);
+            abandon(app);
+        else
+            finish(app, 0ms);
     }
+    std::erase_if(app.abandoned_jobs,
+                  [](const auto& job) { return job->result.wait_for(0ms) == std::future_status::ready; });
     if (!app.binding_job && wants_binding(app)) {
         start(app, app.last_binding);
         finish(app, 12ms);
     }
+    const auto before = Clock::now();
+    const unsigned long version = editor.deformation.version;
     refresh(editor);
     if (editor.deformation.version != version)
         app.deform_milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - before).count();

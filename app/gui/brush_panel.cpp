@@ -71,7 +71,7 @@ void draw_brush_section(App& app) {
     check_box(app, "Build up", brush.build_up);
     tooltip("Dabs of one stroke pile up");
     ImGui::SameLine(0, app.px(12));
-    check_box(app, "Mirror", editor.mirror);
+    check_box(app, "Mirror", editor.mirror, false);
     tooltip("Strokes are painted on both sides of the axis (X), onto the probe that mirrors the chosen one");
     if (!editor.mirror) return;
     MirrorAxis axis = mirror_axis(editor);

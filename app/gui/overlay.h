@@ -11,8 +11,9 @@ namespace probewarp {
 /// What is to be shown: decides whether the overlay must be made anew.
 struct OverlayKey {
     ShownWeights weights = ShownWeights::none;
-    bool stiffness = false;  ///< instead of a probe's weights: while the pin is at work
-    int probe = 0;           ///< id
+    bool pins = false;   ///< the stiffness instead of a probe's weights: while the pin is at work
+    PaintPtr stiffness;  ///< what is shown then
+    int probe = 0;       ///< id
     bool iso_lines = false;
     float opacity = 0;
     friend bool operator==(const OverlayKey&, const OverlayKey&) = default;

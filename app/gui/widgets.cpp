@@ -123,10 +123,10 @@ bool slider_field(App& app, const char* id, double& value, const char* unit, flo
     return changed;
 }
 
-bool check_box(App& app, const char* label, bool& on) {
+bool check_box(App& app, const char* label, bool& on, bool first) {
     ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, std::max(1.0f, std::floor(app.px(1))));
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {app.px(3), app.px(3)});
-    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.px(3));
+    if (first) ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.px(3));
     const bool clicked = ImGui::Checkbox(label, &on);
     ImGui::PopStyleVar(2);
     return clicked;

@@ -40,8 +40,8 @@ bool slider_field(App& app, const char* id, double& value, const char* unit, flo
 /// The slider's own part: a track with a grip at `part` in [0, 1]. Returns whether the hand set it.
 bool slim_slider(App& app, const char* id, double& part, float width);
 
-/// A box with its label, framed as the fields are. Returns whether it was clicked.
-bool check_box(App& app, const char* label, bool& on);
+/// A box with its label, framed as the fields are; `first` of its row. Returns whether it was clicked.
+bool check_box(App& app, const char* label, bool& on, bool first = true);
 
 /// The line between two sections of the panel.
 void begin_section_gap(App& app);

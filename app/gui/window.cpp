@@ -405,6 +405,7 @@ int run_window(const std::string& path) {
     set_callbacks(window);
     if (!path.empty()) open_path(app, path);
     run(app);
+    glfwHideWindow(window);  // a thread that is in the middle of something may take seconds to end
     return 0;
 }
 

@@ -25,13 +25,12 @@ std::vector<OverlayVertex> weight_overlay(const Deformation& deformation, int pr
     return vertices;
 }
 
-std::vector<OverlayVertex> stiffness_overlay(const Deformation& deformation) {
+std::vector<OverlayVertex> stiffness_overlay(const Deformation& deformation, const PaintMap* stiffness) {
     std::vector<OverlayVertex> vertices(deformation.now.size(), OverlayVertex{});
-    const Document& document = deformation.source;
-    if (!document.stiffness) return vertices;
-    const auto stiffness =
-        stiffness_at(*document.stiffness, frame_of(document.picture->image), mesh_of(deformation).rest);
-    for (std::size_t v = 0; v < vertices.size(); ++v) vertices[v].value = stiffness[v];
+    if (!stiffness) return vertices;
+    const PictureFrame frame = frame_of(deformation.source.picture->image);
+    const auto values = stiffness_at(*stiffness, frame, mesh_of(deformation).rest);
+    for (std::size_t v = 0; v < vertices.size(); ++v) vertices[v].value = values[v];
     return vertices;
 }
 

@@ -12,7 +12,7 @@ namespace probewarp {
 /// probes' colours by their shares: #vertices.
 std::vector<OverlayVertex> weight_overlay(const Deformation& deformation, int probe);
 
-/// The stiffness paint at each vertex, as values: #vertices.
-std::vector<OverlayVertex> stiffness_overlay(const Deformation& deformation);
+/// The stiffness paint (null: none) at each vertex, as values: #vertices.
+std::vector<OverlayVertex> stiffness_overlay(const Deformation& deformation, const PaintMap* stiffness);
 
 }  // namespace probewarp
