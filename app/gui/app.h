@@ -95,6 +95,7 @@ struct App {
     double busy_since = -1;  ///< seconds of ImGui's clock; negative while nothing blocks
     ImGuiID field = 0;       ///< the item of the panel field being edited
     int renaming = 0;        ///< probe id
+    int listed = 0;          ///< probe id: chosen when the list was last drawn
     int typed_cells = 0;     ///< of the mesh, while they are being typed
     bool typing_cells = false;
     std::string new_name;

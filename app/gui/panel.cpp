@@ -19,7 +19,8 @@ namespace probewarp {
 
 namespace {
 
-constexpr double farthest = 1e6;  // of a typed coordinate, image pixels
+constexpr std::size_t most_rows = 8;  // of the list of probes; more scroll
+constexpr double farthest = 1e6;      // of a typed coordinate, image pixels
 
 /// Call after a field of the panel: what it does until it is left is one step of the history.
 void is_step(App& app, const std::string& label) {
@@ -69,9 +70,11 @@ void draw_probe_row(App& app, Probe& probe) {
     Editor& editor = app.editor;
     ImGui::PushID(probe.id);
     const bool chosen = probe.id == editor.selected;
+    const bool scrolled = app.editor.document.probes.size() > most_rows;
     const ImVec2 cursor = ImGui::GetCursorScreenPos();
     const ImVec2 at{cursor.x - app.px(8), cursor.y};
-    const float width = ImGui::GetContentRegionAvail().x + app.px(16), height = app.px(look::field);
+    const float width = ImGui::GetContentRegionAvail().x + app.px(scrolled ? 8 : 16),
+                height = app.px(look::field);
     ImDrawList* list = ImGui::GetWindowDrawList();
     ImGui::SetCursorScreenPos(at);
     if (ImGui::InvisibleButton("##row", {width - app.px(66), height})) editor.selected = probe.id;
@@ -108,6 +111,27 @@ void draw_probe_row(App& app, Probe& probe) {
     ImGui::PopID();
 }
 
+/// Many probes scroll among themselves, so that what is below stays in reach.
+void draw_probe_list(App& app) {
+    auto& probes = app.editor.document.probes;
+    const bool scrolls = probes.size() > most_rows;
+    if (scrolls) {
+        ImGui::SetCursorPosX(ImGui::GetCursorPosX() - app.px(8));
+        ImGui::BeginChild(
+            "##list", {ImGui::GetContentRegionAvail().x + app.px(8), app.px(look::row) * (most_rows + 0.5f)});
+        ImGui::Indent(app.px(8));
+    }
+    // A row may end a gesture or take a step, never add or remove a probe.
+    for (Probe& probe : probes) {
+        draw_probe_row(app, probe);
+        if (!scrolls || probe.id != app.editor.selected || probe.id == app.listed) continue;
+        ImGui::SetScrollHereY(0.5f);
+        app.wake();
+    }
+    app.listed = app.editor.selected;
+    if (scrolls) ImGui::EndChild();
+}
+
 void draw_probes(App& app) {
     bool add = false;
     if (section(app, "probes", "Probes", app.probes_open, &add)) {
@@ -116,8 +140,7 @@ void draw_probes(App& app) {
             ImGui::TextDisabled("None yet. Double-click the picture to put one there.");
             ImGui::PopTextWrapPos();
         }
-        // A row may end a gesture or take a step, never add or remove a probe.
-        for (Probe& probe : app.editor.document.probes) draw_probe_row(app, probe);
+        draw_probe_list(app);
     }
     if (!add) return;
     const Image& image = app.editor.document.picture->image;
