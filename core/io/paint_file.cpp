@@ -35,6 +35,9 @@ struct Texel {
     friend auto operator<=>(const Texel&, const Texel&) = default;
 };
 
+/// Not in the generic code below: clang 14 forgets its destructor there.
+std::shared_ptr<PaintTile> blank_tile() { return std::make_shared<PaintTile>(); }
+
 template <class Sample>
 Texel texel_of(const Sample* rgba) {
     constexpr unsigned scale = sizeof(Sample) == 1 ? 257 : 1;
@@ -56,7 +59,7 @@ PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent) {
     const int across = (map.width + side - 1) / side, down = (map.height + side - 1) / side;
     std::map<Texel, std::shared_ptr<const PaintTile>> uniform;  // tiles of one value, each made once
     const auto tile_at = [&](const auto& rgba, int left, int top) -> std::shared_ptr<const PaintTile> {
-        auto tile = std::make_shared<PaintTile>();
+        auto tile = blank_tile();
         const int right = std::min(left + side, map.width), bottom = std::min(top + side, map.height);
         const auto texel = [&](int x, int y) {
             return texel_of(rgba.data() + (std::size_t(y) * std::size_t(map.width) + std::size_t(x)) * 4);
