@@ -50,6 +50,7 @@ ExportSettings export_settings(const RenderOptions& o) {
     settings.samples = o.samples;
     settings.canvas = o.canvas == "fit" ? Canvas::fit : Canvas::image;
     settings.background = parse_colour(o.background);
+    settings.overlay = !o.heat.empty();
     return settings;
 }
 

@@ -129,6 +129,9 @@ void start(Editor& editor, Document document, std::filesystem::path path, bool s
 /// before drawing.
 void refresh(Editor& editor);
 
+/// Whether the deformation is the document's own, rather than one that waits for its binding.
+bool is_deformed(const Editor& editor);
+
 /// Makes `document` a step of the history, unless nothing changed. Ends a gesture.
 void commit(Editor& editor, std::string label);
 /// Takes back what the gesture did. Without one, unselects.

@@ -29,6 +29,10 @@ PaintMap map_of(const Document& document, std::size_t probe) {
 /// own.
 void add_task(Editor& editor, std::string label, std::function<Document(const Deformation&)> work) {
     refresh(editor);
+    if (!is_deformed(editor)) {
+        editor.notice = "The weights are still being worked out.";
+        return;
+    }
     editor.tasks.push_back(
         {std::move(label), [deformation = std::make_shared<const Deformation>(editor.deformation),
                             work = std::move(work)] { return work(*deformation); }});
@@ -69,7 +73,7 @@ void mirror_paint(Editor& editor, Side side) {
                          is_blank(map) ? nullptr : std::make_shared<const PaintMap>(std::move(map));
                  };
                  mirror(probe, own, others);
-                 if (other != probe) mirror(other, others, own);
+                 if (other != probe && !document.probes[other].locked) mirror(other, others, own);
                  return document;
              });
 }
@@ -83,6 +87,10 @@ std::string_view needs_paintable(const Editor& editor) {
 std::string_view needs_paint(const Editor& editor) {
     const Probe* probe = find_probe(editor.document, editor.selected);
     return !probe ? "Choose a probe first" : !probe->paint ? "The probe has no paint" : "";
+}
+std::string_view needs_own_paint(const Editor& editor) {
+    const std::string_view why_not = needs_paintable(editor);
+    return why_not.empty() ? needs_paint(editor) : why_not;
 }
 std::string_view needs_any_paint(const Editor& editor) {
     return any_paint(editor.document) ? "" : "Nothing is painted";

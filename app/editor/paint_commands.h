@@ -7,8 +7,10 @@ namespace probewarp {
 
 /// Why the chosen probe cannot be painted by a command; empty where it can.
 std::string_view needs_paintable(const Editor& editor);
-/// ... or has no paint to copy or clear.
+/// ... or has no paint to copy.
 std::string_view needs_paint(const Editor& editor);
+/// ... or has no paint that could be changed.
+std::string_view needs_own_paint(const Editor& editor);
 std::string_view needs_any_paint(const Editor& editor);
 std::string_view needs_copied_paint(const Editor& editor);
 std::string_view needs_stiffness(const Editor& editor);

@@ -21,6 +21,8 @@ struct PaintStroke {
     std::shared_ptr<const Binding> binding;
     Layer layer;
     std::optional<Layer> mirrored;  ///< where the other side is another probe's
+    Brush brush;                    ///< as it was when the stroke began
+    bool inverted = false;          ///< likewise: Ctrl was held
     glm::dvec2 last{0};             ///< image pixels: where the last dab fell
     std::vector<glm::vec2> still;   ///< #vertices, image pixels: as shown_positions says
 };

@@ -91,10 +91,9 @@ float share_at(const PaintStroke& stroke, const PaintStroke::Layer& layer, const
     return before.coverage * before.value + (1 - before.coverage) * float(share);
 }
 
-void fall(Editor& editor, const PaintStroke& stroke, PaintStroke::Layer& layer, const Mask& mask,
-          const Brush& brush, bool inverted) {
+void fall(Editor& editor, const PaintStroke& stroke, PaintStroke::Layer& layer, const Mask& mask) {
     const PictureFrame frame = frame_of(editor.document.picture->image);
-    dab(layer.map, layer.stroke, mask, brush, inverted,
+    dab(layer.map, layer.stroke, mask, stroke.brush, stroke.inverted,
         [&](int x, int y) { return share_at(stroke, layer, frame, x, y); });
     paint_of_layer(editor.document, layer.probe) = std::make_shared<const PaintMap>(layer.map);
 }
@@ -106,18 +105,17 @@ Brush brush_for(const Editor& editor, bool inverted) {
     return brush;
 }
 
-void fall_at(Editor& editor, PaintStroke& stroke, glm::dvec2 point, bool inverted) {
+void fall_at(Editor& editor, PaintStroke& stroke, glm::dvec2 point) {
     const Image& image = editor.document.picture->image;
     const PictureFrame frame = frame_of(image);
-    const Brush brush = brush_for(editor, inverted);
+    const Brush& brush = stroke.brush;
     PaintStroke::Layer& layer = stroke.layer;
     const Mask mask =
         dab_mask(layer.map, frame, *stroke.binding->mesh, shown_positions(editor), image, brush, point);
-    fall(editor, stroke, layer, mask, brush, inverted);
+    fall(editor, stroke, layer, mask);
     if (!editor.mirror) return;
     PaintStroke::Layer& other = stroke.mirrored ? *stroke.mirrored : layer;
-    fall(editor, stroke, other, mirrored(mask, layer.map, other.map, frame, mirror_axis(editor)), brush,
-         inverted);
+    fall(editor, stroke, other, mirrored(mask, layer.map, other.map, frame, mirror_axis(editor)));
 }
 
 /// Why the chosen probe cannot be painted; empty where it can.
@@ -142,6 +140,8 @@ void begin_stroke(Editor& editor, const PointerEvent& event) {
     auto stroke = std::make_shared<PaintStroke>();
     stroke->binding = editor.deformation.binding;
     stroke->layer = layer_of(editor, probe);
+    stroke->inverted = event.ctrl;
+    stroke->brush = brush_for(editor, event.ctrl);
     stroke->last = to_image(editor.view, event.at);
     if (editor.shown_weights != ShownWeights::none) stroke->still = editor.deformation.now;
     if (editor.mirror && !stiff) {
@@ -153,7 +153,7 @@ void begin_stroke(Editor& editor, const PointerEvent& event) {
     Gesture& gesture = begin(editor, Gesture::Kind::paint, event,
                              stiff ? "Paint stiffness" : "Paint " + find_probe(editor.document, probe)->name);
     gesture.stroke = stroke;
-    fall_at(editor, *stroke, stroke->last, event.ctrl);
+    fall_at(editor, *stroke, stroke->last);
 }
 
 }  // namespace
@@ -190,8 +190,8 @@ void drag_brush(Editor& editor, const PointerEvent& event) {
     PaintStroke& stroke = *gesture.stroke;
     if (stroke.binding != editor.deformation.binding)
         return;  // the mesh changed under the hand: no more dabs
-    for (const glm::dvec2 point : dabs_between(stroke.last, to_image(editor.view, event.at), editor.brush)) {
-        fall_at(editor, stroke, point, event.ctrl);
+    for (const glm::dvec2 point : dabs_between(stroke.last, to_image(editor.view, event.at), stroke.brush)) {
+        fall_at(editor, stroke, point);
         stroke.last = point;
     }
 }

@@ -123,6 +123,7 @@ void replace_picture_dialog(App& app) {
                                        } catch (const Error& error) {
                                            return say(a, Tone::error, error.what());
                                        }
+                                       a.editor.axis.reset();  // it was the other picture's
                                        a.editor.document = std::move(document);
                                        commit(a.editor, "Replace picture");
                                        a.editor.fit_wanted = true;

@@ -31,6 +31,7 @@ struct Shown {
     glm::ivec2 size{0};
     bool mesh = false, light = false;
     bool still = false;  ///< the picture stands still under a stroke
+    bool bound = false;  ///< with its mesh, rather than as it is while that is being made
     OverlayKey overlay;
     GLuint texture = 0;
 };
@@ -77,8 +78,9 @@ struct App {
     std::vector<std::unique_ptr<BindingJob>> abandoned_jobs;  ///< given up, and not yet at their end
     std::shared_ptr<const Binding> last_binding;  ///< whatever document it is of: the next one starts from it
     std::optional<Document> unbound;              ///< the document whose binding failed
-    std::optional<MeshPoint> under;               ///< of the deformed mesh under the pointer
-    std::vector<double> shares;                   ///< #probes: there; empty beside the picture
+    std::string unbound_reason;
+    std::optional<MeshPoint> under;  ///< of the deformed mesh under the pointer
+    std::vector<double> shares;      ///< #probes: there; empty beside the picture
 
     Jobs jobs;
     std::vector<Message> messages;

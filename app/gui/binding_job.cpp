@@ -1,6 +1,7 @@
 #include "gui/binding_job.h"
 
 #include <chrono>
+#include <new>
 
 #include "gui/app.h"
 
@@ -35,9 +36,14 @@ bool finish(App& app, std::chrono::milliseconds patience) {
         app.last_binding = binding;
         app.editor.next_binding = std::move(binding);
     } catch (const GivenUp&) {
+    } catch (const std::bad_alloc&) {
+        app.unbound = ended->document;
+        app.unbound_reason = "There is not enough memory for the weights; choose a coarser mesh.";
+        say(app, Tone::error, app.unbound_reason);
     } catch (const std::exception& error) {
         app.unbound = ended->document;
-        say(app, Tone::error, error.what());
+        app.unbound_reason = error.what();
+        say(app, Tone::error, app.unbound_reason);
     }
     return true;
 }
@@ -51,8 +57,11 @@ void abandon(App& app) {
 }
 
 bool wants_binding(const App& app) {
-    if (is_deformation_ready(app)) return false;
-    return !app.unbound || !(*app.unbound == app.editor.document);
+    const Editor& editor = app.editor;
+    if (is_deformation_ready(app) || (editor.gesture && editor.gesture->stroke)) return false;
+    if (editor.next_binding && is_bound(editor.next_binding.get(), editor.document)) return false;
+    // One that cannot be interrupted where it is may still have all its memory: not one more each time.
+    return app.abandoned_jobs.size() < 2 && !(app.unbound && binds_alike(*app.unbound, editor.document));
 }
 
 }  // namespace
@@ -60,6 +69,13 @@ bool wants_binding(const App& app) {
 bool is_deformation_ready(const App& app) {
     const Binding* binding = app.editor.deformation.binding.get();
     return is_bound(binding, app.editor.document) && fits(binding, app.editor.document);
+}
+
+std::string why_not_deformed(const App& app) {
+    if (is_deformation_ready(app)) return {};
+    const bool failed = app.unbound && binds_alike(*app.unbound, app.editor.document);
+    return failed ? "The weights cannot be worked out: " + app.unbound_reason
+                  : "The weights are still being worked out.";
 }
 
 void update_deformation(App& app) {

@@ -5,6 +5,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "model/binding.h"
 
@@ -34,5 +35,8 @@ void update_deformation(App& app);
 
 /// Whether the deformation is what the document says, not one that waits for its binding.
 bool is_deformation_ready(const App& app);
+
+/// A sentence on why it is not; empty where it is.
+std::string why_not_deformed(const App& app);
 
 }  // namespace probewarp

@@ -21,17 +21,16 @@ void update_texture(App& app, glm::ivec2 size) {
     if (app.jobs.exporting) return;  // the renderer is busy; the canvas keeps its last picture
     if (app.uploaded != app.editor.document.picture) return prepare_picture(app, app.editor.document.picture);
     const Editor& editor = app.editor;
-    // Another picture's mesh is no way to show this one: the canvas waits for its binding.
-    if (!fits(editor.deformation.binding.get(), editor.document) &&
-        editor.deformation.source.picture != editor.document.picture)
-        return;
+    // Another picture's mesh is no way to show this one: until its binding is there it is shown as it is.
+    const bool bound =
+        editor.deformation.binding && editor.deformation.source.picture == editor.document.picture;
     Shown& shown = app.shown;
-    const OverlayKey overlay = overlay_key(editor);
+    const OverlayKey overlay = bound ? overlay_key(editor) : OverlayKey{};
     const bool still = shown_positions(editor).data() != editor.deformation.now.data();
     if (shown.picture == app.uploaded && shown.version == editor.deformation.version &&
         shown.mesh_version == editor.deformation.mesh_version && same(shown.view, editor.view) &&
         shown.size == size && shown.mesh == editor.show_mesh && shown.light == app.theme.is_light &&
-        shown.overlay == overlay && shown.still == still)
+        shown.overlay == overlay && shown.still == still && shown.bound == bound)
         return;
     View view;
     view.scale = glm::dvec2(editor.view.zoom);
@@ -39,8 +38,8 @@ void update_texture(App& app, glm::ivec2 size) {
     view.width = size.x;
     view.height = size.y;
     const bool new_mesh = shown.mesh_version != editor.deformation.mesh_version;
-    const bool new_positions =
-        new_mesh || shown.version != editor.deformation.version || shown.still != still;
+    const bool new_positions = shown.bound != bound || new_mesh ||
+                               shown.version != editor.deformation.version || shown.still != still;
     const bool new_overlay = new_positions || !(shown.overlay == overlay);
     // Kept before the drawing: where it fails, it is tried again only when something has changed.
     const GLuint texture = shown.texture;
@@ -52,15 +51,19 @@ void update_texture(App& app, glm::ivec2 size) {
              editor.show_mesh,
              app.theme.is_light,
              still,
+             bound,
              overlay,
              texture};
     try {
-        if (new_mesh) app.renderer->set_mesh(mesh_of(editor.deformation));
-        if (new_positions) app.renderer->set_positions(shown_positions(editor), editor.deformation.moved);
+        if (bound && new_mesh) app.renderer->set_mesh(mesh_of(editor.deformation));
+        if (!bound)
+            app.renderer->set_positions({}, false);
+        else if (new_positions)
+            app.renderer->set_positions(shown_positions(editor), editor.deformation.moved);
         if (new_overlay) app.renderer->set_overlay(overlay_vertices(editor, overlay), overlay_style(overlay));
-        app.renderer->draw(view, 1);
-        shown.texture =
-            app.renderer->display(view, display_colours(app.theme), double(app.px(12)), editor.show_mesh);
+        app.renderer->draw(view, 1, true);
+        shown.texture = app.renderer->display(view, display_colours(app.theme), double(app.px(12)),
+                                              bound && editor.show_mesh);
     } catch (const std::exception& error) {
         say(app, Tone::error, error.what());
     }

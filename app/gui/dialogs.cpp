@@ -43,7 +43,7 @@ std::string export_trouble(const App& app) {
     const ImageFormat* format = image_format_of(path);
     if (!is_obj(path) && app.uploaded != app.editor.document.picture)
         return "The picture is still being prepared.";
-    if (!is_deformation_ready(app)) return "The weights are still being worked out.";
+    if (auto reason = why_not_deformed(app); !reason.empty()) return reason;
     if (!is_obj(path) && (!format || !format->encode))
         return "The name must end with .png, .jpg, .bmp, .tga or .obj.";
     std::error_code ignored;

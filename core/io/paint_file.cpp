@@ -48,6 +48,13 @@ Texel texel_of(const Sample* rgba) {
 
 }  // namespace
 
+std::size_t paint_texels(std::span<const std::byte> bytes) {
+    constexpr std::size_t header = 8 + 8 + 13;  // signature, the chunk's length and type, IHDR
+    if (bytes.size() < header || !find_image_format("png")->recognise(bytes) || u8(bytes, 24) != 16)
+        throw Error("is no 16-bit PNG; expected a map of paint");
+    return std::size_t(be32(bytes, 16)) * be32(bytes, 20);
+}
+
 PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent) {
     if (!find_image_format("png")->recognise(bytes)) throw Error("is no PNG; expected a 16-bit grey one");
     const Image image = decode_png(bytes);

@@ -14,6 +14,10 @@ namespace probewarp {
 /// The map as a PNG of its size: grey is the value, alpha the coverage.
 std::vector<std::byte> encode_paint(const PaintMap& map);
 
+/// Texels that a PNG's header promises. Throws Error where the bytes are no 16-bit PNG, as projects have
+/// them.
+std::size_t paint_texels(std::span<const std::byte> bytes);
+
 /// A map of the PNG's size over `extent` (see PaintMap): the value is the mean of red, green and blue, the
 /// coverage is alpha, or 1 without. Tiles that are the same throughout are shared. Throws Error: a clause, no
 /// file name.

@@ -28,7 +28,7 @@ constexpr std::size_t max_probes = 10000;
 constexpr std::size_t max_json_objects = 2 * max_probes + 8;  // a probe and its paint, the project a few
 constexpr std::size_t max_json_lists = 3 * max_probes + 8;    // rest, now and the paint's extent of each
 /// Of all paint together, so that a small file cannot ask for all memory or time: 512 MiB of tiles.
-constexpr std::size_t max_painted_texels = std::size_t{1} << 27, max_paint_texels = std::size_t{1} << 30;
+constexpr std::size_t max_painted_texels = std::size_t{1} << 27, max_paint_texels = std::size_t{1} << 28;
 constexpr std::size_t max_json_fields = 64;  // of one object
 
 std::vector<std::byte> to_bytes(std::string_view text) {
@@ -214,6 +214,11 @@ std::string one_line(std::string text) {
     return text;
 }
 
+Error too_much_paint(std::size_t texels, std::size_t most) {
+    return Error(fmt::format("the paint takes {} million texels; expected at most {} million",
+                             texels / 1000000, most / 1000000));
+}
+
 /// The place of the picture's bytes in the archive: "image" with its format's usual ending.
 std::string image_member(const Picture& picture) {
     return fmt::format("image{}", find_image_format(picture.format)->extensions[0]);
@@ -313,11 +318,12 @@ Document decode(std::vector<std::byte> bytes) {
         if (!known.insert(member->file).second)
             throw Error(fmt::format("project.json names {} twice; expected a file for each", member->file));
         try {
-            PaintMap map = decode_paint(find(member->file)->bytes, member->extent);
-            texels += std::size_t(map.width) * std::size_t(map.height);
+            const std::vector<std::byte>& png = find(member->file)->bytes;
+            texels += paint_texels(png);
+            if (texels > max_paint_texels) throw too_much_paint(texels, max_paint_texels);
+            PaintMap map = decode_paint(png, member->extent);
             painted += painted_texels(map);
-            if (texels > max_paint_texels || painted > max_painted_texels)
-                throw Error("more paint than fits; expected at most 134 million painted texels in all");
+            if (painted > max_painted_texels) throw too_much_paint(painted, max_painted_texels);
             return std::make_shared<const PaintMap>(std::move(map));
         } catch (const Error& error) {
             throw Error(fmt::format("{}: {}", member->file, error.what()));
@@ -375,8 +381,8 @@ std::vector<std::byte> encode_project(const Document& document) {
     };
     for (const Probe& probe : document.probes) add_paint(probe.paint, paint_file(probe));
     add_paint(document.stiffness, stiffness_file);
-    if (texels > max_paint_texels || painted > max_painted_texels)
-        throw Error("there is more paint than a project holds; clear what is not needed");
+    if (texels > max_paint_texels) throw too_much_paint(texels, max_paint_texels);
+    if (painted > max_painted_texels) throw too_much_paint(painted, max_painted_texels);
     return write_zip(members);
 }
 

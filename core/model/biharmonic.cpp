@@ -67,6 +67,7 @@ void factor(BiharmonicCache& cache, double rho, std::span<const Place> places) {
     if (!cache.ordered) cache.factor.analyzePattern(matrix);
     cache.ordered = true;
     cache.factor.factorize(matrix);
+    check_factored(cache.factor);
 }
 
 /// Minimises 1/2 w^T (energy + holds) w - w^T pulls within 0 <= w <= 1 for several w at once, by the

@@ -31,11 +31,13 @@ std::shared_ptr<const Mesh> mesh_for(const Document& document, std::span<const s
 
 }  // namespace
 
+bool binds_alike(const Document& a, const Document& b) {
+    return same_mesh(a, b) && same_weights(a.weights, b.weights) &&
+           same_probes(a, b, [](const Probe& p, const Probe& q) { return p.radius == q.radius; });
+}
+
 bool is_bound(const Binding* binding, const Document& document) {
-    return binding && same_mesh(binding->source, document) &&
-           same_weights(binding->source.weights, document.weights) &&
-           same_probes(binding->source, document,
-                       [](const Probe& p, const Probe& q) { return p.radius == q.radius; });
+    return binding && binds_alike(binding->source, document);
 }
 
 bool fits(const Binding* binding, const Document& document) {

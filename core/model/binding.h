@@ -22,6 +22,9 @@ struct Binding {
     std::shared_ptr<WeightCache> cache;  ///< likewise
 };
 
+/// Whether two documents have the same binding, but for the probes' ids.
+bool binds_alike(const Document& a, const Document& b);
+
 /// Whether `binding` (may be null) is what make_binding would give for `document`.
 bool is_bound(const Binding* binding, const Document& document);
 

@@ -56,7 +56,8 @@ void replace_picture(Document& document, PicturePtr picture) {
 void check_size(const Document& document) {
     const Image& image = document.picture->image;
     const auto [columns, rows] = grid_size(image.width, image.height, document.mesh.cells);
-    const std::size_t vertices = std::size_t(columns + 1) * std::size_t(rows + 1);
+    // A vertex at each probe besides the grid's.
+    const std::size_t vertices = std::size_t(columns + 1) * std::size_t(rows + 1) + document.probes.size();
     if (vertices * document.probes.size() > max_weights)
         throw Error(
             fmt::format("{} vertices times {} probes are more than the {} weights that fit: choose a coarser "

@@ -159,6 +159,7 @@ void find_columns(const WeightInput& input, HarmonicCache& cache, const Ties& ti
         for (const std::uint32_t v : first_vertices(input))
             grounded.coeffRef(Eigen::Index(v), Eigen::Index(v)) += 1;
         cache.grounded.emplace(grounded);
+        check_factored(*cache.grounded);
     }
     for (const std::uint32_t vertex : ties.vertices) {
         if (cache.columns.contains(vertex)) continue;
@@ -255,6 +256,7 @@ void solve_directly(const WeightInput& input, HarmonicCache& cache, std::span<co
     cache.direct_ordered = true;
     go_on(input);
     cache.direct.factorize(matrix);
+    check_factored(cache.direct);
 
     const auto& order = cache.direct.permutationP().indices();
     Sides sides(vertices, side_by_side), shares(vertices, side_by_side);

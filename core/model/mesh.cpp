@@ -259,11 +259,13 @@ std::optional<MeshPoint> locate_at_rest(const Mesh& mesh, glm::dvec2 point) {
     return nearest;
 }
 
-std::span<const std::uint32_t> cell_corners(const Mesh& mesh, glm::dvec2 point) {
+std::array<std::uint32_t, 4> grid_corners(const Mesh& mesh, glm::dvec2 point) {
     const auto cell = cell_at(mesh, point);
-    if (!cell) return {};
-    const std::size_t first = mesh.first_triangle[*cell], last = mesh.first_triangle[*cell + 1];
-    return std::span(mesh.triangles).subspan(3 * first, 3 * (last - first));
+    if (!cell) return {no_vertex, no_vertex, no_vertex, no_vertex};
+    const std::size_t across = std::size_t(mesh.columns) + 1;
+    const std::size_t corner = *cell / std::size_t(mesh.columns) * across + *cell % std::size_t(mesh.columns);
+    return {mesh.grid[corner], mesh.grid[corner + 1], mesh.grid[corner + across],
+            mesh.grid[corner + across + 1]};
 }
 
 glm::dvec2 rest_point(const Mesh& mesh, const MeshPoint& at) {

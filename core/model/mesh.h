@@ -77,8 +77,9 @@ std::optional<MeshPoint> locate(const Mesh& mesh, std::span<const glm::vec2> ver
 /// The triangle of the mesh at rest under `point`, found by its cell. Empty outside the mesh.
 std::optional<MeshPoint> locate_at_rest(const Mesh& mesh, glm::dvec2 point);
 
-/// The corners of the triangles of the cell at `point` of the picture at rest; each may come several times.
-std::span<const std::uint32_t> cell_corners(const Mesh& mesh, glm::dvec2 point);
+/// The grid's vertices at the corners of the cell at `point` of the picture at rest; no_vertex beside the
+/// mesh.
+std::array<std::uint32_t, 4> grid_corners(const Mesh& mesh, glm::dvec2 point);
 
 /// The point of the picture at rest that `at` names.
 glm::dvec2 rest_point(const Mesh& mesh, const MeshPoint& at);

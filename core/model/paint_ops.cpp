@@ -240,7 +240,8 @@ Document with_covered(const Deformation& deformation, Edit edit) {
     std::vector<PaintMap> maps(document.probes.size());
     std::vector<std::size_t> left;
     for (std::size_t i = 0; i < maps.size(); ++i)
-        if (document.probes[i].paint) maps[i] = *document.probes[i].paint, left.push_back(i);
+        if (document.probes[i].paint && !document.probes[i].locked)
+            maps[i] = *document.probes[i].paint, left.push_back(i);
     while (!left.empty()) {
         const PaintMap first = maps[left.front()];
         const auto others = std::stable_partition(left.begin(), left.end(),
@@ -250,7 +251,8 @@ Document with_covered(const Deformation& deformation, Edit edit) {
     }
     for (std::size_t i = 0; i < maps.size(); ++i) {
         PaintPtr& paint = document.probes[i].paint;
-        if (paint && !(*paint == maps[i])) paint = std::make_shared<const PaintMap>(std::move(maps[i]));
+        if (paint && !document.probes[i].locked && !(*paint == maps[i]))
+            paint = std::make_shared<const PaintMap>(std::move(maps[i]));
     }
     return document;
 }

@@ -39,12 +39,14 @@ PaintMap mirrored_paint(const PaintMap& onto, const PaintMap& from, const Pictur
 /// The map with what is on one side of the axis reflected to the other: mirrored_paint onto itself.
 PaintMap mirrored_paint(const PaintMap& map, const PictureFrame& frame, const MirrorAxis& axis, Side side);
 
-/// The document with the painted values, wherever there is paint, made what actually deforms: in each texel
-/// with coverage of each painted probe's own map, the value becomes the share that settles there.
+/// The document with the painted values, wherever there is paint of a probe that is not locked, made what
+/// actually deforms: in each texel with coverage of each painted probe's own map, the value becomes the share
+/// that settles there.
 Document normalised_paint(const Deformation& deformation);
 
-/// The document in which, wherever a probe's paint has coverage and the probe is not among the `most`
-/// heaviest there (by settled share, the first of equals), its painted value is 0. Requires most > 0.
+/// The document in which, wherever the paint of a probe that is not locked has coverage and the probe is not
+/// among the `most` heaviest there (by settled share, the first of equals), its painted value is 0. Requires
+/// most > 0.
 Document limited_paint(const Deformation& deformation, std::size_t most);
 
 /// How near, in parts of the picture's longer side, a probe must be to another's mirror image.

@@ -1,6 +1,7 @@
 #include "model/refine.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <deque>
@@ -85,30 +86,33 @@ std::vector<VertexRun> repainted(const Document& before, const Document& after, 
     return runs;
 }
 
-namespace {
-
-/// At its own vertex a probe has all the automatic weight, and nobody is there to divide what paint takes
-/// from it. So the more of the row is covered, the more it becomes the mean of the cell's other rows.
-void open_anchor(const Binding& binding, std::size_t vertex, float covered, std::span<float> row) {
-    const Mesh& mesh = *binding.mesh;
-    std::vector<float> mean(row.size());
-    int rows = 0;
-    for (const std::uint32_t v : cell_corners(mesh, mesh.rest[vertex])) {
-        if (std::find(mesh.anchors.begin(), mesh.anchors.end(), v) != mesh.anchors.end()) continue;
-        ++rows;
-        const auto other = std::span(binding.automatic).subspan(v * row.size(), row.size());
-        float total = 0;
-        for (const float w : other) total += w;
-        for (std::size_t i = 0; i < row.size(); ++i) mean[i] += other[i] / total;
-    }
-    if (rows == 0) return;
-    float total = 0;  // of probes that coincide each has weight 1
-    for (const float w : row) total += w;
-    for (std::size_t i = 0; i < row.size(); ++i)
-        row[i] = (1 - covered) * row[i] / total + covered * mean[i] / float(rows);
+std::vector<bool> anchored_vertices(const Mesh& mesh) {
+    std::vector<bool> anchored(mesh.rest.size());
+    for (const std::uint32_t v : mesh.anchors)
+        if (v != no_vertex) anchored[v] = true;
+    return anchored;
 }
 
-}  // namespace
+void open_anchor(const Binding& binding, const std::vector<bool>& anchored, std::size_t vertex, float covered,
+                 std::span<float> row) {
+    const auto divide_by_sum = [](std::span<float> weights, float part) {
+        float total = 0;
+        for (const float w : weights) total += w;
+        for (float& w : weights) w *= part / total;
+    };
+    // The cell's corners are all of its vertices that may be nobody's own.
+    std::array<std::uint32_t, 4> corners{};
+    std::size_t count = 0;
+    for (const std::uint32_t v : grid_corners(*binding.mesh, binding.mesh->rest[vertex]))
+        if (v != no_vertex && !anchored[v]) corners[count++] = v;
+    divide_by_sum(row, count > 0 ? 1 - covered : 1);
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto corner = std::span(binding.automatic).subspan(corners[k] * row.size(), row.size());
+        float total = 0;
+        for (const float w : corner) total += w;
+        for (std::size_t i = 0; i < row.size(); ++i) row[i] += covered * corner[i] / (total * float(count));
+    }
+}
 
 void settle_run(const Document& document, const Binding& binding, VertexRun run, std::span<float> weights) {
     const std::size_t probes = document.probes.size();
@@ -121,10 +125,7 @@ void settle_run(const Document& document, const Binding& binding, VertexRun run,
         locked[i] = document.probes[i].locked;
         painted = painted || document.probes[i].paint;
     }
-    std::vector<bool> anchored(painted ? binding.mesh->rest.size() : 0);
-    if (painted)
-        for (const std::uint32_t v : binding.mesh->anchors)
-            if (v != no_vertex) anchored[v] = true;
+    const std::vector<bool> anchored = painted ? anchored_vertices(*binding.mesh) : std::vector<bool>();
     for (std::size_t k = 0; k < run.count; ++k) {
         const auto automatic = std::span(binding.automatic).subspan((run.first + k) * probes, probes);
         const auto row = weights.subspan(k * probes, probes);
@@ -138,7 +139,7 @@ void settle_run(const Document& document, const Binding& binding, VertexRun run,
             covered = std::max(covered, paint[i].coverage);
         }
         if (covered == 0) continue;  // where nothing is painted the weights stay as they are
-        if (anchored[run.first + k]) open_anchor(binding, run.first + k, covered, row);
+        if (anchored[run.first + k]) open_anchor(binding, anchored, run.first + k, covered, row);
         settle(row, paint, locked, row);
     }
     if (document.weights.most > 0 && !document.stiffness)

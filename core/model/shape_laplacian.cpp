@@ -1,5 +1,7 @@
 #include "model/shape_laplacian.h"
 
+#include "model/error.h"
+
 namespace probewarp {
 
 SparseMatrix laplacian(const Shape& shape) {
@@ -44,6 +46,12 @@ Eigen::VectorXd lumped_areas(const Shape& shape) {
                     for (const int c : {column, column + 1})
                         areas[Eigen::Index(shape.grid[shape.crossing(c, r)])] += 0.25;
     return areas;
+}
+
+void check_factored(const Cholesky& factor) {
+    if (factor.info() != Eigen::Success)
+        throw Error(
+            "the weights cannot be worked out on this mesh; choose another scheme or another density");
 }
 
 void solve_in_factor_order(const Cholesky& factor, Sides& sides) {

@@ -20,6 +20,9 @@ SparseMatrix laplacian(const Shape& shape);
 /// #grid vertices: a quarter of the kept cells around each; in cells, not pixels.
 Eigen::VectorXd lumped_areas(const Shape& shape);
 
+/// Throws Error where the matrix could not be factored.
+void check_factored(const Cholesky& factor);
+
 /// Right-hand sides that are solved together: a row holds one vertex's.
 inline constexpr int side_by_side = 8;
 using Sides = Eigen::Array<double, Eigen::Dynamic, side_by_side, Eigen::RowMajor>;

@@ -9,6 +9,8 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "model/refine.h"
+
 namespace probewarp {
 
 namespace {
@@ -66,6 +68,7 @@ ShareLookup::ShareLookup(const Deformation& deformation)
         same->probes.push_back(i);
     }
     paint_.resize(probes);
+    anchored_ = anchored_vertices(mesh_of(deformation));
 }
 
 MeshPoint ShareLookup::nearest_place(glm::dvec2 point) const {
@@ -80,13 +83,13 @@ MeshPoint ShareLookup::nearest_place(glm::dvec2 point) const {
     return *locate_at_rest(mesh, glm::clamp(point, (corner + hair) * side, (corner + 1.0 - hair) * side));
 }
 
-bool ShareLookup::sample_paint(glm::dvec2 point) const {
-    bool covered = false;
+float ShareLookup::sample_paint(glm::dvec2 point) const {
+    float covered = 0;
     for (const auto& [grid, probes] : painted_) {
         const auto taps = taps_at(grid, to_texels(grid, frame_, point));
         for (const std::size_t i : probes) {
             paint_[i] = taps ? sample_at(*deformation_.source.probes[i].paint, *taps) : Paint{};
-            covered = covered || paint_[i].coverage > 0;
+            covered = std::max(covered, paint_[i].coverage);
         }
     }
     return covered;
@@ -97,15 +100,21 @@ void ShareLookup::at(glm::dvec2 point, std::span<float> shares) const {
     assert(probes == paint_.size());
     if (probes == 0) return;
     const MeshPoint place = nearest_place(point);
+    const float covered = sample_paint(point);
     std::array<const float*, 3> rows{};
     std::array<float, 3> part{};
     for (std::size_t k = 0; k < 3; ++k) {
         rows[k] = weights_.data() + place.corners[k] * probes;
         part[k] = float(place.barycentric[int(k)]) * to_share_[place.corners[k]];
+        if (covered == 0 || !anchored_[place.corners[k]]) continue;
+        opened_[k].assign(rows[k], rows[k] + probes);
+        open_anchor(*deformation_.binding, anchored_, place.corners[k], covered, opened_[k]);
+        rows[k] = opened_[k].data();
+        part[k] = float(place.barycentric[int(k)]);
     }
     for (std::size_t i = 0; i < probes; ++i)
         shares[i] = part[0] * rows[0][i] + part[1] * rows[1][i] + part[2] * rows[2][i];
-    if (sample_paint(point)) settle(shares, paint_, locked_, shares);
+    if (covered > 0) settle(shares, paint_, locked_, shares);
 }
 
 ShareRaster share_raster(const Deformation& deformation, std::size_t probe, const PaintMap& map) {

@@ -1,6 +1,7 @@
 // What each probe's share is anywhere on the picture: at one place, and over the whole picture as rasters.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,17 +32,19 @@ class ShareLookup {
     };
 
     MeshPoint nearest_place(glm::dvec2 point) const;
-    /// Fills paint_ in; returns whether there is any coverage.
-    bool sample_paint(glm::dvec2 point) const;
+    /// Fills paint_ in; returns the largest coverage.
+    float sample_paint(glm::dvec2 point) const;
 
     const Deformation& deformation_;
     std::span<const float> weights_;           ///< #vertices x #probes, row-major: what is interpolated
     std::vector<float> to_share_;              ///< #vertices: 1 / the sum of the row
     std::vector<std::uint32_t> nearest_cell_;  ///< #cells: itself where it is kept
     PictureFrame frame_;
-    std::vector<Painted> painted_;      ///< whose paint is settled here
-    std::vector<std::uint8_t> locked_;  ///< #probes
-    mutable std::vector<Paint> paint_;  ///< #probes: scratch
+    std::vector<Painted> painted_;                      ///< whose paint is settled here
+    std::vector<std::uint8_t> locked_;                  ///< #probes
+    std::vector<bool> anchored_;                        ///< #vertices: whether it is a probe's own
+    mutable std::vector<Paint> paint_;                  ///< #probes: scratch
+    mutable std::array<std::vector<float>, 3> opened_;  ///< #probes each: likewise
 };
 
 /// A raster over the same rectangle and with the same texels as a paint map.

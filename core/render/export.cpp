@@ -92,7 +92,7 @@ void ExportJob::step() {
     tile.origin += glm::dvec2(left, top) / view_.scale;
     tile.width = std::min(tile_, view_.width - left);
     tile.height = std::min(tile_, view_.height - top);
-    renderer_.draw(tile, settings_.samples);
+    renderer_.draw(tile, settings_.samples, settings_.overlay);
     renderer_.read_back(image_, left, top, tile, settings_.samples, settings_.background);
     ++next_;
 }

@@ -23,6 +23,7 @@ struct ExportSettings {
     int samples = 1;  ///< samples x samples a pixel, in [1, max_samples]
     Canvas canvas = Canvas::image;
     std::optional<Colour> background;  ///< empty: as transparent as the picture is
+    bool overlay = false;              ///< with the renderer's overlay over the picture
 };
 
 /// What the whole export shows. Throws Error where it would be larger than a picture may be.

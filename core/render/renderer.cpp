@@ -164,17 +164,17 @@ void Renderer::set_view(const GlProgram& program, const View& view, int samples)
     set(program, "size", glm::dvec2(view.width * samples, view.height * samples));
 }
 
-void Renderer::use_mesh_program(const View& view, int samples) const {
+void Renderer::use_mesh_program(const View& view, int samples, bool with_overlay) const {
     const bool shader = blend_centre_ && moved_;
-    const GlProgram& program = overlay_style_ ? mesh_overlay_program_
-                               : shader       ? mesh_dlb_program_
-                                              : mesh_program_;
+    const GlProgram& program = with_overlay ? mesh_overlay_program_
+                               : shader     ? mesh_dlb_program_
+                                            : mesh_program_;
     glUseProgram(program.name());
     set_view(program, view, samples);
     if (shader) bind_blend(program);
     set(program, "picture", 0);
     set(program, "last_level", picture_.last_level);
-    if (!overlay_style_) return;
+    if (!with_overlay) return;
     set(program, "heat", overlay_style_->heat ? 1 : 0);
     set(program, "iso_lines", overlay_style_->iso_lines ? 1 : 0);
     set(program, "opacity", overlay_style_->opacity);
@@ -184,19 +184,20 @@ void Renderer::use_mesh_program(const View& view, int samples) const {
     }
 }
 
-void Renderer::draw(const View& view, int samples) {
+void Renderer::draw(const View& view, int samples, bool with_overlay) {
+    with_overlay = with_overlay && overlay_style_;
     // Float, because the sums of weighted colours must give every byte of a file back.
     resize(layer_, view.width * samples, view.height * samples, GL_RGBA32F);
     begin(layer_);
     const GLfloat nothing[4]{};
     glClearBufferfv(GL_COLOR, 0, nothing);
-    use_mesh_program(view, samples);
+    use_mesh_program(view, samples, with_overlay);
     glBindTexture(GL_TEXTURE_2D, picture_.texture.name());
     // Where the mesh folds, a later triangle lies over an earlier one.
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    if (moved_ || overlay_style_) {
+    if (moved_ || with_overlay) {
         glBindVertexArray(mesh_array_.name());
         glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.name());
         glDrawElements(GL_TRIANGLES, GLsizei(triangle_places_.size()), GL_UNSIGNED_INT, nullptr);

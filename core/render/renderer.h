@@ -67,12 +67,12 @@ class Renderer {
     void set_blend(std::span<const float> weights, std::span<const DualComplex<float>> transformations,
                    glm::vec2 centre);
 
-    /// Draws a colour over the picture wherever there is some of it, until it is set empty.
-    /// vertices: #vertices of the mesh, or none
+    /// Has draw, where it is asked to, lay a colour over the picture wherever there is some of it, until it
+    /// is set empty. vertices: #vertices of the mesh, or none
     void set_overlay(std::span<const OverlayVertex> vertices, const OverlayStyle& style = {});
 
     /// Draws the deformed picture as weighted colours, samples x samples texels a target pixel.
-    void draw(const View& view, int samples);
+    void draw(const View& view, int samples, bool with_overlay = false);
 
     /// Turns what draw drew into straight-alpha integers, filled with `background` or as transparent as it
     /// is, and writes them at (left, top) of `image`, whose depth they take.
@@ -87,7 +87,7 @@ class Renderer {
   private:
     void set_view(const GlProgram& program, const View& view, int samples) const;
     void bind_blend(const GlProgram& program) const;
-    void use_mesh_program(const View& view, int samples) const;
+    void use_mesh_program(const View& view, int samples, bool with_overlay) const;
     void draw_lines(const View& view, glm::vec4 colour);
 
     GlProgram mesh_program_, mesh_dlb_program_, mesh_overlay_program_, resolve_program_, display_program_,

@@ -63,9 +63,12 @@ BENCHMARK(copy_weights)->Apply(sizes);
 
 void inverse_distance(benchmark::State& state) {
     const Document document = document_with(int(state.range(0)), int(state.range(1)));
-    const Mesh mesh = grid_mesh(4096, 4096, document.mesh.cells);
+    const auto binding = make_binding(document, nullptr);
+    std::shared_ptr<WeightCache> cache;
     for (auto _ : state)
-        benchmark::DoNotOptimize(weight_table(weight_schemes()[0], document.probes, mesh.rest));
+        benchmark::DoNotOptimize(
+            find_weight_scheme("inverse-distance")
+                ->table({*binding->mesh, binding->islands, document.probes, default_exponent, cache}));
 }
 BENCHMARK(inverse_distance)->Apply(sizes);
 

@@ -11,8 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "io/paint_file.h"
 #include "io/project.h"
 #include "io/zip_archive.h"
+#include "model/paint_ops.h"
 
 namespace {
 
@@ -23,10 +25,16 @@ Bytes to_bytes(std::string_view text) {
     return {bytes.begin(), bytes.end()};
 }
 
+/// With the paint that the text speaks of, as a member that nobody names is refused.
 Bytes enveloped(std::span<const std::byte> json) {
-    const probewarp::ZipMember members[] = {{"mimetype", to_bytes(probewarp::project_mimetype), true},
-                                            {"project.json", {json.begin(), json.end()}, true},
-                                            {"image.ppm", to_bytes("P6 2 2 255\nabcdefghijkl"), true}};
+    std::vector<probewarp::ZipMember> members{{"mimetype", to_bytes(probewarp::project_mimetype), true},
+                                              {"project.json", {json.begin(), json.end()}, true},
+                                              {"image.ppm", to_bytes("P6 2 2 255\nabcdefghijkl"), true}};
+    static const Bytes paint =
+        probewarp::encode_paint(probewarp::filled(probewarp::new_paint_map(2, 2), 0.5f));
+    const std::string_view text(reinterpret_cast<const char*>(json.data()), json.size());
+    for (const char* name : {"paint/1.png", "stiffness.png"})
+        if (text.find(name) != std::string_view::npos) members.push_back({name, paint, true});
     return probewarp::write_zip(members);
 }
 
@@ -64,6 +72,15 @@ void check(const probewarp::Document& document) {
         if (!ids.insert(p.id).second || p.id < 1 || !(p.radius > 0) || !std::isfinite(p.radius) ||
             !std::isfinite(p.angle) || !std::isfinite(p.rest.x + p.rest.y + p.now.x + p.now.y))
             std::abort();
+    const auto fits = [](const probewarp::PaintPtr& paint) {
+        return !paint ||
+               (paint->width > 0 && paint->height > 0 && paint->extent.x > 0 && paint->extent.y > 0 &&
+                paint->tiles.size() ==
+                    std::size_t((paint->width + 63) / 64) * std::size_t((paint->height + 63) / 64));
+    };
+    if (!fits(document.stiffness)) std::abort();
+    for (const probewarp::Probe& p : document.probes)
+        if (!fits(p.paint)) std::abort();
     const Bytes once = probewarp::encode_project(document);
     if (probewarp::encode_project(probewarp::decode_project(once, "again")) != once) std::abort();
 }

@@ -59,6 +59,12 @@ def main(folder):
     text = json.dumps(files.fields()).encode()
     seeds = [b"\0" + files.project(), b"\1" + text, b"\1" + json.dumps(dict(files.fields(), probes=[])).encode(),
              b"\0" + files.project_of(text, files.png(2, 2), "image.png"), b"\1{}"]
+    # Of the second format: with paint, with paint of other kinds of PNG, and the text alone with none.
+    seeds += [b"\2" + files.archive(files.painted_members()),
+              b"\2" + files.archive(files.painted_members(files.png(70, 3, 8, 0), files.png(2, 2)))]
+    plain = dict(files.painted_fields(), stiffness=None)
+    plain["probes"] = [dict(probe, paint=None) for probe in plain["probes"]]
+    seeds += [b"\1" + json.dumps(plain).encode(), b"\1" + json.dumps(files.painted_fields()).encode()]
     for i, data in enumerate(seeds):
         save(os.path.join(folder, "project"), data, i)
     for i, data in enumerate(csvs()):

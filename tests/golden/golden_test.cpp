@@ -29,6 +29,14 @@ const std::vector<std::string> ten_probes{"--probe", "10,10:8,12,-10",    "--pro
                                           "--probe", "86,48:86,52,-12",   "--probe", "10,86",
                                           "--probe", "48,86:46,82,20,8",  "--probe", "86,86:82,88,10"};
 
+/// In the fork's arms and foot; what is between the arms is near to both, and within the shape to neither.
+std::vector<std::string> in_the_fork(std::vector<std::string> more) {
+    std::vector<std::string> arguments{
+        "--mesh", "24", "--probe", "27,18:33,22,25", "--probe", "69,18:71,12,-20", "--probe", "48,76:48,76"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
 const std::vector<Golden> goldens{
     {"opposite", "card.png", {"--probe", "20,48", "--probe", "76,48:76,48,180"}},
     {"ten-probes", "card.png", ten_probes},
@@ -44,6 +52,18 @@ const std::vector<Golden> goldens{
     {"deep", "deep.png", {"--probe", "12,12:14.5,10.5,12", "--probe", "36,36"}},
     {"background", "soft.png", {"--background", "#204060", "--probe", "32,32:36,30,10"}},
     {"size", "wide.png", {"--size", "300x80", "--probe", "550,20:550,24,3", "--probe", "100,20"}},
+    {"inverse-distance", "fork.png", in_the_fork({"--weights", "inverse-distance"})},
+    {"gaussian", "fork.png", in_the_fork({"--weights", "gaussian"})},
+    {"geodesic", "fork.png", in_the_fork({"--weights", "geodesic"})},
+    {"harmonic", "fork.png", in_the_fork({"--weights", "harmonic"})},
+    {"biharmonic", "fork.png", in_the_fork({"--weights", "biharmonic"})},
+    {"heat-one", "fork.png", in_the_fork({"--weights", "geodesic", "--heat", "2", "--iso-lines"})},
+    {"heat-all", "fork.png", in_the_fork({"--weights", "biharmonic", "--heat", "all"})},
+    {"heat-faint",
+     "soft.png",
+     {"--probe", "20,32:16,28", "--probe", "46,32", "--heat", "1", "--opacity", "0.3"}},
+    {"painted", "painted.probewarp", {}},
+    {"painted-heat", "painted.probewarp", {"--heat", "Left", "--iso-lines"}},
 };
 
 class GoldenTest : public testing::TestWithParam<std::tuple<Golden, const char*>> {};

@@ -44,7 +44,7 @@ class Desk:
         # Nothing of it may hold the test's own output open: who waits for that would wait for ever.
         silent = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL}
         self.processes.append(subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", "2560x1600x24", "-nolisten", "tcp"],
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "2560x1600x24", "-nolisten", "tcp", "-noreset"],
             pass_fds=[write], stderr=subprocess.DEVNULL, **silent))
         os.close(write)
         with os.fdopen(read) as pipe:

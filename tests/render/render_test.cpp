@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <shaders/embedded.h>
 
+#include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <random>
@@ -161,6 +162,81 @@ TEST(Sampling, AWholePixelShiftIsExactAlsoWhereVerticesAreRounded) {
     for (int y = down; y < height; ++y)
         for (int x = right; x < width; ++x)
             wrong += pixel(shifted, x, y) != pixel(document.picture->image, x - right, y - down);
+    EXPECT_EQ(wrong, 0);
+}
+
+/// A ring of noise, its left half faint, with colour also where there is no alpha.
+PicturePtr ring(int side) {
+    Picture picture;
+    picture.image.width = picture.image.height = side;
+    std::mt19937 random(11);
+    std::vector<std::uint8_t> rgba;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            const double far = std::hypot(x + 0.5 - side / 2.0, y + 0.5 - side / 2.0) / side;
+            for (int k = 0; k < 3; ++k) rgba.push_back(std::uint8_t(random()));
+            const unsigned most = x < side / 2 ? 20 : 255;
+            rgba.push_back(far > 0.2 && far < 0.4 ? std::uint8_t(random() % most + 1) : std::uint8_t{0});
+        }
+    picture.image.rgba = std::move(rgba);
+    return std::make_shared<const Picture>(std::move(picture));
+}
+
+/// A renderer that holds a document's picture and its deformed mesh.
+void prepare(Renderer& renderer, const Document& document, const Deformation& deformation) {
+    renderer.set_picture(upload_picture(document.picture->image));
+    renderer.set_mesh(mesh_of(deformation));
+    renderer.set_positions(deformation.now, deformation.moved);
+}
+
+TEST(Outline, CellsThatAreLeftOutChangeNoUndeformedByte) {
+    const auto context = open_context("osmesa");
+    Renderer renderer;
+    Document document;
+    document.picture = ring(120);
+    document.mesh.cells = 40;
+    document.mesh.threshold = 100;  // leaves out cells of visible pixels too
+    document.mesh.margin = 0;
+    for (const glm::dvec2 rest : {glm::dvec2(60, 24), glm::dvec2(95.5, 61.5), glm::dvec2(3, 3)}) {
+        Deformation deformation;
+        document.probes.push_back(new_probe(document, rest));
+        update(deformation, document);
+        ASSERT_LT(mesh_of(deformation).triangles.size(), std::size_t{3} * 2 * 40 * 40);
+        prepare(renderer, document, deformation);
+        const Image same = exported(renderer, document, deformation);
+        EXPECT_EQ(same.rgba, document.picture->image.rgba) << document.probes.size() << " probes";
+    }
+}
+
+TEST(Outline, WhatIsVisibleMovesWhole) {
+    const auto context = open_context("osmesa");
+    Renderer renderer;
+    Document document;
+    document.picture = ring(120);
+    document.mesh.cells = 40;
+    constexpr int right = 7, down = -5;
+    for (const glm::dvec2 rest : {glm::dvec2(60, 24), glm::dvec2(61, 97)}) {
+        Probe probe = new_probe(document, rest);
+        probe.now += glm::dvec2(right, down);
+        document.probes.push_back(probe);
+    }
+    Deformation deformation;
+    update(deformation, document);
+    ASSERT_LT(mesh_of(deformation).triangles.size(), std::size_t{3} * 2 * 40 * 40);
+    prepare(renderer, document, deformation);
+    const Image moved = exported(renderer, document, deformation);
+    const Image& picture = document.picture->image;
+    int visible = 0, wrong = 0;
+    for (int y = 0; y < 120; ++y)
+        for (int x = 0; x < 120; ++x) {
+            const int from_x = x - right, from_y = y - down;
+            const bool inside = from_x >= 0 && from_y >= 0 && from_x < 120 && from_y < 120;
+            const auto was = inside ? pixel(picture, from_x, from_y) : std::array<int, 4>{};
+            visible += was[3] > 0;
+            // Whole pixels are exact; of what cannot be seen only that counts.
+            wrong += was[3] > 0 ? pixel(moved, x, y) != was : pixel(moved, x, y)[3] != 0;
+        }
+    EXPECT_GT(visible, 5000);
     EXPECT_EQ(wrong, 0);
 }
 

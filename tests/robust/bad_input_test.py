@@ -222,8 +222,8 @@ class BadFiles(unittest.TestCase):
         for name in "a\nb.png", "\x1b[31mred.png", "\u009b31mred.png", "caf\u00e9 \u0001.png":
             self.refused(name, b"", "is empty", named="is empty")
         self.refused(os.fsdecode(b"latin\xe9.png"), b"", "is empty", named="is empty")
-        self.refused("\x1b[31m\u009b.probewarp", files.project(format=2), named="format 2")
-        self.refused(os.fsdecode(b"\xe9.probewarp"), files.project(format=2), named="format 2")
+        self.refused("\x1b[31m\u009b.probewarp", files.project(format=3), named="format 3")
+        self.refused(os.fsdecode(b"\xe9.probewarp"), files.project(format=3), named="format 3")
 
     # ---- sizes beyond the limits ----
 
@@ -334,7 +334,7 @@ class BadFiles(unittest.TestCase):
                               (["probes", 0, "id"], "0 -1 -0 2147483647 2147483648 4294967297 18446744073709551615 1.0 1.5"),
                               (["probes", 0, "radius"], "0 -1 -0.0 1e-300 1e8"),
                               (["probes", 0, "rest", 0], "1e8 -1e8"), (["probes", 0, "angle_radians"], "1e7 -1e7"),
-                              (["format"], "0 -1 2 1000000 1.0 1.5 4294967297 18446744073709551617")]:
+                              (["format"], "0 -1 3 1000000 1.0 1.5 4294967297 18446744073709551617")]:
             for value in values.split():
                 self.json_refused(self.changed(place, value))
 
@@ -357,7 +357,7 @@ class BadFiles(unittest.TestCase):
             self.json_refused(self.changed(place + ["\u001b[31m\u009b"], "1"))
             self.json_refused(self.changed(place + ["\u00e9" * 200], "1"))
             self.json_refused(self.changed(place + ["x" * 1000000], "1"))
-        self.json_refused(self.changed(["format"], "2"), "format 2")
+        self.json_refused(self.changed(["format"], "3"), "format 3")
         for colour in '"red"', '"#12345"', '"#1234567"', '"#gggggg"', '"#-12345"', '"# 12345"', '"#0x1234"':
             self.json_refused(self.changed(["probes", 0, "colour"], colour), "colour")
         for name in '"a\\nb"', '"\\u001b[31m"', '"\\u0000"', '"\\u007f"', f'"{"x" * 201}"':
@@ -521,6 +521,46 @@ class BadFiles(unittest.TestCase):
                 f.write(struct.pack("<IIQI", 0x07064B50, 0, start + size, 1))
                 f.write(b"PK\x05\x06" + struct.pack("<HHHHIIH", 0, 0, 65535, 65535, 0xFFFFFFFF, 0xFFFFFFFF, 0))
         self.refused("many.probewarp", make)
+
+    # ---- projects: paint ----
+
+    def test_paint(self):
+        sound = files.png(6, 3, 16, 4)
+        self.assertEqual(self.open_quietly(files.archive(files.painted_members())), 0)
+        for paint in (b"", b"P5 1 1 255\nx", files.bmp(5, 3), sound[:-1], sound[:-12], sound[:40], sound[:8],
+                      sound[:60] + bytes([sound[60] ^ 0xFF]) + sound[61:], sound[:29] + bytes(4) + sound[33:]):
+            self.refused("a.probewarp", files.archive(files.painted_members(paint)), "paint/1.png", quick=True)
+            self.refused("a.probewarp", files.archive(files.painted_members(None, paint)), "stiffness.png", quick=True)
+        good = files.painted_members()
+        for i in 3, 4:
+            self.zip_refused(good[:i] + good[i + 1:], good[i][0])
+        self.zip_refused(good + [("paint/2.png", sound)], "paint/2.png")
+        self.refused("a.probewarp", files.zip_records([files.record(n.encode(), d) for n, d in good + [good[3]]]))
+        text = good[1][1].decode()
+        for name in "stiffness.png", "image.ppm", "project.json", "mimetype", "../paint", "/etc/passwd", "\u009b31m", "":
+            changed = text.replace('"paint/1.png"', json.dumps(name))
+            self.zip_refused([good[0], ("project.json", changed.encode())] + good[2:])
+        for value in "NaN", "0", "-1", "1e-7", "1e7", "1e999", "null", '"1"', "[]":
+            changed = text.replace("[1.0, 0.5]", f"[1.0, {value}]")
+            self.zip_refused([good[0], ("project.json", changed.encode())] + good[2:])
+
+    def test_paint_bombs(self):
+        def paint(width, height, bits, colour, total):
+            """Small as a file: `total` bytes of zeros."""
+            packed, _ = files.deflated_zeros(-(-total // (1 << 20)) << 20)
+            return (files.png_header(width, height, bits, colour) + files.png_chunk(b"IDAT", packed)
+                    + files.png_chunk(b"IEND", b""))
+
+        def project(data):
+            return files.archive(files.painted_members(data))
+
+        self.harmless("line.probewarp", project(paint(30000, 1, 16, 4, 120001)))
+        self.harmless("column.probewarp", project(paint(1, 30000, 16, 4, 150000)))
+        self.harmless("wide.probewarp", project(paint(32768, 3000, 8, 0, 32769 * 3000)))
+        self.harmless("deep.probewarp", project(paint(32768, 1500, 16, 4, 131073 * 1500)))
+        for size in (32768, 3100, 16, 4), (30000, 30000, 16, 4), (32769, 1, 16, 4), (1, 40000, 8, 0), (0, 4, 16, 4):
+            self.refused("large.probewarp", project(paint(*size, 1 << 20)), "paint/1.png")
+        self.refused("late.probewarp", project(paint(32768, 3000, 8, 0, 32769 * 2900)), "paint/1.png")
 
     # ---- the other inputs ----
 

@@ -99,6 +99,22 @@ def fields():
             "weights": "inverse-distance", "blend": "dlb", "probes": [probe, dict(probe, id=2, rest=[0.0, 0.0])]}
 
 
+def painted_fields():
+    """Likewise of the second format, with paint on the first probe and with stiffness."""
+    first, second = fields()["probes"]
+    return dict(fields(), format=2, mesh={"cells": 4, "from_alpha": True, "threshold": 0, "margin": 2.0},
+                weights={"scheme": "geodesic", "exponent": 2.0, "falloff": 0.0, "most": 0},
+                stiffness={"file": "stiffness.png", "extent": [1.0, 1.0]},
+                probes=[dict(first, paint={"file": "paint/1.png", "extent": [1.0, 0.5]}), dict(second, paint=None)])
+
+
+def painted_members(paint=None, stiffness=None):
+    """The members of such a project; the paint may be other bytes."""
+    return [("mimetype", MIMETYPE), ("project.json", json.dumps(painted_fields()).encode()), ("image.ppm", PIXEL),
+            ("paint/1.png", png(6, 3, 16, 4) if paint is None else paint),
+            ("stiffness.png", png(3, 3, 16, 4) if stiffness is None else stiffness)]
+
+
 def project_of(text, image=PIXEL, image_name="image.ppm"):
     """A project around the text of its project.json."""
     return archive([("mimetype", MIMETYPE), ("project.json", text if isinstance(text, bytes) else text.encode()),
@@ -156,7 +172,7 @@ def sound(program, folder):
         ("rgb.bmp", bmp(5, 3)), ("down.bmp", bmp(3, -2)), ("palette.bmp", bmp(5, 3, 8)),
         ("raw.tga", tga(5, 4)), ("packed.tga", tga(9, 5, True)),
         ("small.gif", gif(12, 10)), ("raw.psd", psd(5, 3)), ("packed.psd", psd(9, 3, True)), ("deep.psd", psd(3, 2, bits=16)),
-        ("hand.probewarp", project()),
+        ("hand.probewarp", project()), ("painted.probewarp", archive(painted_members())),
     ] + list(PNM.items())
     source = os.path.join(folder, "source.png")
     with open(source, "wb") as f:

@@ -11,6 +11,7 @@ namespace {
 using testing::error_of;
 using testing::expect_always;
 using testing::real;
+using testing::same_paint;
 using testing::whole;
 
 constexpr glm::dvec2 extent{1, 0.75};
@@ -22,19 +23,6 @@ PaintMap map_of(int width, int height) {
     map.extent = extent;
     map.tiles.resize(std::size_t((width + 63) / 64) * std::size_t((height + 63) / 64));
     return map;
-}
-
-/// Whether both have the same texels, in tiles that are null at the same places.
-bool same_paint(const PaintMap& a, const PaintMap& b) {
-    if (a.width != b.width || a.height != b.height || a.extent != b.extent ||
-        a.tiles.size() != b.tiles.size())
-        return false;
-    for (std::size_t i = 0; i < a.tiles.size(); ++i) {
-        const PaintTile *one = a.tiles[i].get(), *other = b.tiles[i].get();
-        if (!one != !other) return false;
-        if (one && (one->value != other->value || one->coverage != other->coverage)) return false;
-    }
-    return true;
 }
 
 std::vector<std::byte> png_of(int width, int height, std::vector<std::uint8_t> rgba) {

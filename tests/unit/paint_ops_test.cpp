@@ -1,6 +1,8 @@
 // Operations on whole maps by hand-computed numbers; and the shares over the picture, which say what deforms.
 #include "model/paint_ops.h"
 
+#include "model/refine.h"
+
 #include <numeric>
 
 #include "generators.h"
@@ -238,6 +240,10 @@ TEST(ShareLookup, SettlesThePaintOfThePlaceItself) {
         document.probes[std::size_t(*whole(0, 2))].locked = *whole(0, 1) == 1;
         const Deformation deformation = deformation_of(document);
         const glm::dvec2 point{*real(0, 40), *real(0, 30)};
+        // At a probe's own vertex paint opens the automatic weights: the next test.
+        const auto anchored = anchored_vertices(mesh_of(bare));
+        const auto at = locate_at_rest(mesh_of(bare), point);
+        RC_PRE(std::ranges::none_of(at->corners, [&](std::uint32_t v) { return anchored[v]; }));
         auto wanted = looked_up(bare, point);
         std::vector<Paint> paint(3);
         std::vector<std::uint8_t> locked;
@@ -251,6 +257,16 @@ TEST(ShareLookup, SettlesThePaintOfThePlaceItself) {
         const auto found = looked_up(deformation, point);
         for (std::size_t i = 0; i < 3; ++i) RC_ASSERT(std::abs(found[i] - wanted[i]) < 1e-6);  // float's sums
     });
+}
+
+TEST(ShareLookup, AProbesOwnPlaceCanBePaintedAwayFromIt) {
+    Document document = three_probes();
+    document.probes[0].paint = shared(filled(map_of(40, 30), 0.25f));
+    const auto shares = looked_up(deformation_of(document), document.probes[0].rest);
+    EXPECT_EQ(shares[0], from_stored(to_stored(0.25f)));
+    EXPECT_NEAR(shares[0] + shares[1] + shares[2], 1, 1e-6);  // three floats
+    EXPECT_GT(shares[1], 0);
+    EXPECT_GT(shares[2], 0);
 }
 
 TEST(ShareLookup, EachMapLiesWhereItsExtentSays) {

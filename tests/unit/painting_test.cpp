@@ -238,6 +238,51 @@ TEST_F(PaintingTest, CommandsPaintTheWholeMap) {
     EXPECT_FALSE(probe(0).paint);
 }
 
+TEST_F(PaintingTest, CommandsWaitForTheWeights) {
+    click({100, 100});
+    editor.binds_elsewhere = true;  // and nobody does
+    Document document = editor.document;
+    document.probes.erase(document.probes.begin());
+    editor.document = document;
+    editor.selected = 2;
+    invert_paint(editor);
+    EXPECT_TRUE(editor.tasks.empty());
+    EXPECT_NE(take_notice().find("still being worked out"), std::string::npos);
+    editor.deformation = {};
+    invert_paint(editor);
+    EXPECT_TRUE(editor.tasks.empty());
+}
+
+TEST_F(PaintingTest, LockedProbesKeepTheirPaint) {
+    editor.mirror = true;
+    click({60, 150});  // the first and the second, its mirror image
+    const PaintPtr first = probe(0).paint, second = probe(1).paint;
+    probe(1).locked = true;
+    commit(editor, "lock");
+    click({60, 120});
+    mirror_left_to_right(editor);
+    run_tasks();
+    limit_paint(editor);
+    run_tasks();
+    normalise_paint(editor);
+    run_tasks();
+    clear_all_paint(editor);
+    EXPECT_EQ(probe(1).paint, second);
+    EXPECT_NE(probe(0).paint, first);
+    editor.selected = 2;
+    EXPECT_EQ(find_command("Clear the probe's paint").why_not(editor), "The probe is locked");
+    EXPECT_EQ(find_command("Mirror left to right").why_not(editor), "The probe is locked");
+}
+
+TEST_F(PaintingTest, AStrokeKeepsTheBrushItBeganWith) {
+    press(editor, {.at = on_canvas({60, 100})});
+    editor.brush.value = 0;
+    editor.brush.radius = 2;
+    move(editor, {.at = on_canvas({120, 100}), .ctrl = true});
+    release(editor, {.at = on_canvas({120, 100})});
+    EXPECT_EQ(paint_at(0, {120, 115}), (Paint{1, 1}));
+}
+
 TEST_F(PaintingTest, OneSideIsMirroredOntoTheOther) {
     editor.selected = 3;
     click({160, 40});

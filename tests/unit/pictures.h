@@ -40,6 +40,19 @@ inline Probe& add_probe(Document& document, glm::dvec2 rest, glm::dvec2 now, dou
     return document.probes.back();
 }
 
+/// Whether both have the same texels, in tiles that are null at the same places.
+inline bool same_paint(const PaintMap& a, const PaintMap& b) {
+    if (a.width != b.width || a.height != b.height || a.extent != b.extent ||
+        a.tiles.size() != b.tiles.size())
+        return false;
+    for (std::size_t i = 0; i < a.tiles.size(); ++i) {
+        const PaintTile *one = a.tiles[i].get(), *other = b.tiles[i].get();
+        if (!one != !other) return false;
+        if (one && (one->value != other->value || one->coverage != other->coverage)) return false;
+    }
+    return true;
+}
+
 inline constexpr double degrees = std::numbers::pi / 180;
 
 /// What a call has to say about its Error; "" where there was none. Any other exception goes on.

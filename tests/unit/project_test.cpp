@@ -7,6 +7,7 @@
 #include "io/file.h"
 #include "io/image_file.h"
 #include "io/zip_archive.h"
+#include "model/paint_ops.h"
 #include "pictures.h"
 #include "raw_zip.h"
 #include "temporary_folder.h"
@@ -21,6 +22,7 @@ using testing::error_of;
 using testing::expect_always;
 using testing::magnitude;
 using testing::real;
+using testing::same_paint;
 using testing::to_bytes;
 using testing::whole;
 
@@ -61,12 +63,40 @@ std::string any_name() {
     return name;
 }
 
+/// Paint of any size, with a few painted rectangles; or none.
+PaintPtr any_paint() {
+    if (*whole(0, 2) == 0) return nullptr;
+    PaintMap map = new_paint_map(3, 2);
+    map.width = *whole(1, 130);
+    map.height = *whole(1, 130);
+    map.extent = {extreme(1e-6, 1e6), extreme(1e-6, 1e6)};
+    map.tiles.assign(std::size_t((map.width + 63) / 64) * std::size_t((map.height + 63) / 64), nullptr);
+    for (int rectangles = *whole(0, 3); rectangles > 0; --rectangles) {
+        const int left = *whole(0, 129), top = *whole(0, 129);
+        const auto value = from_stored(std::uint16_t(*whole(0, 65535)));
+        const auto coverage = from_stored(std::uint16_t(*whole(1, 65535)));
+        edit_texels(map, left, top, left + *whole(1, 70), top + *whole(1, 70), [&](int x, int y, Paint) {
+            return Paint{(x + y) % 7 ? value : 1 - value, coverage};
+        });
+    }
+    return std::make_shared<const PaintMap>(std::move(map));
+}
+
 Document any_document(const PicturePtr& base) {
     Picture picture = *base;
     picture.name = any_name();
     Document document;
     document.picture = std::make_shared<const Picture>(std::move(picture));
-    document.mesh.cells = *whole(min_cells, max_cells);
+    document.mesh = {*whole(min_cells, max_cells), *whole(0, 1) == 1, *whole(0, 254),
+                     extreme(0, max_mesh_margin)};
+    const auto schemes = weight_schemes();
+    document.weights.scheme = schemes[std::size_t(*whole(0, int(schemes.size()) - 1))].name;
+    document.weights.exponent = extreme(min_exponent, max_exponent);
+    document.weights.falloff = extreme(0, max_falloff);
+    document.weights.most = *whole(0, 1) ? *whole(0, 20) : *rc::gen::element(0, 1, 10000);
+    const auto blends = blend_methods();
+    document.blend = blends[std::size_t(*whole(0, int(blends.size()) - 1))].name;
+    document.stiffness = any_paint();
     const int count = *whole(0, 20);
     const auto place = [] { return extreme(-max_probe_coordinate, max_probe_coordinate); };
     for (int i = 0; i < count; ++i) {
@@ -79,8 +109,14 @@ Document any_document(const PicturePtr& base) {
                         std::uint8_t(*whole(0, 255))};
         probe.locked = *whole(0, 1);
         probe.visible = *whole(0, 1);
+        if (*whole(0, 3) == 0) probe.paint = any_paint();
     }
     return document;
+}
+
+/// By their texels: documents compare by their pointers.
+bool same_paint_or_none(const PaintPtr& a, const PaintPtr& b) {
+    return !a == !b && (!a || same_paint(*a, *b));
 }
 
 TEST(Project, ComesBackAsItWasSaved) {
@@ -95,8 +131,45 @@ TEST(Project, ComesBackAsItWasSaved) {
         RC_ASSERT(back.picture->original == document.picture->original);
         RC_ASSERT(back.picture->image.rgba == document.picture->image.rgba);
         back.picture = document.picture;
+        RC_ASSERT(back.probes.size() == document.probes.size());
+        RC_ASSERT(same_paint_or_none(back.stiffness, document.stiffness));
+        back.stiffness = document.stiffness;
+        for (std::size_t i = 0; i < back.probes.size(); ++i) {
+            RC_ASSERT(same_paint_or_none(back.probes[i].paint, document.probes[i].paint));
+            back.probes[i].paint = document.probes[i].paint;
+        }
         RC_ASSERT(back == document);  // every number in every bit
     });
+}
+
+TEST(Project, OfTheFirstFormatOpensWithTheWholeGrid) {
+    const std::string json = R"({"format": 1, "image": {"file": "image.png", "name": "a.png"},
+        "mesh": {"cells": 7}, "weights": "gaussian", "blend": "dlb", "probes": []})";
+    const std::vector<ZipMember> members{{"mimetype", to_bytes(project_mimetype), true},
+                                         {"project.json", to_bytes(json), false},
+                                         {"image.png", small_picture()->original, true}};
+    const Bytes bytes = write_zip(members);
+    Document expected;
+    expected.mesh.cells = 7;
+    expected.mesh.from_alpha = false;  // it looks as it did
+    expected.weights.scheme = "gaussian";
+    Document back = decode_project(bytes, "x");
+    expected.picture = back.picture;
+    EXPECT_EQ(back, expected);
+    // Saved again, it is of the second format and still the whole grid.
+    EXPECT_FALSE(decode_project(encode_project(back), "x").mesh.from_alpha);
+}
+
+TEST(Project, KeepsThePaintAsItWasNamed) {
+    Document document = small_document();
+    document.probes[0].id = 17;
+    document.probes[0].paint = std::make_shared<const PaintMap>(filled(new_paint_map(3, 2), 0.25f));
+    document.stiffness = std::make_shared<const PaintMap>(filled(new_paint_map(3, 2), 1));
+    std::vector<std::string> names;
+    for (const ZipMember& member : read_zip(encode_project(document), max_file_bytes))
+        names.push_back(member.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"mimetype", "project.json", "image.png", "paint/17.png",
+                                               "stiffness.png"}));
 }
 
 TEST(Project, KeepsThePictureInItsOwnFormat) {
