@@ -94,8 +94,10 @@ void draw_probe_row(App& app, Probe& probe) {
     ImGui::SetCursorScreenPos({at.x + width - app.px(62), at.y});
     ImGui::PushStyleVar(ImGuiStyleVar_Alpha,
                         probe.locked ? 1.0f : 0.5f);  // most are unlocked: they step back
-    const bool toggled = icon_button(app, "##lock", probe.locked ? icon::lock : icon::lock_open,
-                                     probe.locked ? "Unlock" : "Lock: cannot be moved by hand");
+    const bool toggled = icon_button(
+        app, "##lock", probe.locked ? icon::lock : icon::lock_open,
+        probe.locked ? "Unlock"
+                     : "Lock: cannot be moved by hand, and keeps its share when others are painted");
     ImGui::PopStyleVar();
     if (toggled) {
         probe.locked = !probe.locked;

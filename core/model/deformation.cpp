@@ -18,11 +18,26 @@ std::span<const float> weights_of(const Deformation& deformation) {
 
 namespace {
 
-/// Whether nothing that refines the weights differs but the probes' paint.
-bool same_but_paint(const Document& a, const Document& b) {
-    return a.weights.most == b.weights.most && a.stiffness == b.stiffness &&
-           std::equal(a.probes.begin(), a.probes.end(), b.probes.begin(), b.probes.end(),
+bool same_locks(const Document& a, const Document& b) {
+    return std::equal(a.probes.begin(), a.probes.end(), b.probes.begin(), b.probes.end(),
                       [](const Probe& p, const Probe& q) { return p.locked == q.locked; });
+}
+
+/// Whether the refined weights differ in single vertices at most: stiffness joins many, and a new limit meets
+/// all.
+bool differ_by_vertex(const Document& a, const Document& b) {
+    return a.weights.most == b.weights.most && !a.stiffness && !b.stiffness;
+}
+
+/// Those vertices.
+std::vector<VertexRun> changed_runs(const Document& before, const Document& after, const Mesh& mesh) {
+    if (same_locks(before, after)) return repainted(before, after, mesh);
+    // Who is locked matters wherever there is paint.
+    Document bare = after;
+    for (Probe& probe : bare.probes) probe.paint = nullptr;
+    std::vector<VertexRun> runs = repainted(bare, before, mesh);
+    for (const VertexRun run : repainted(bare, after, mesh)) runs.push_back(run);
+    return runs;
 }
 
 /// Moves one run of vertices; returns how many of its weights cancel.
@@ -34,15 +49,25 @@ std::size_t deform_run(Deformation& d, const Document& document, VertexRun run) 
                  glm::vec2(centre(document.picture->image)), std::span(d.now).subspan(run.first, run.count));
 }
 
-/// What changes where only paint did: the weights and the places of the vertices under it.
-void repaint(Deformation& d, const Document& document) {
+/// Works out the weights of some vertices anew, and where these go; the others must be where they belong.
+void refine_runs(Deformation& d, const Document& document, std::span<const VertexRun> runs) {
     const std::size_t probes = document.probes.size();
-    for (const VertexRun run : repainted(d.source, document, mesh_of(d))) {
+    for (const VertexRun run : runs) {
         d.cancelled -= deform_run(d, document, run);
         settle_run(document, *d.binding, run,
                    std::span(d.refined).subspan(run.first * probes, run.count * probes));
         d.cancelled += deform_run(d, document, run);
     }
+}
+
+/// Works all weights out, as far as they may differ from those of `d.source`.
+void refine(Deformation& d, const Document& document, bool rebound) {
+    const bool same = !rebound && d.source.weights.most == document.weights.most &&
+                      d.source.stiffness == document.stiffness && same_locks(d.source, document);
+    if (!is_refined(document))
+        d.refined = {};
+    else if (!same || d.refined.empty() || !repainted(d.source, document, mesh_of(d)).empty())
+        d.refined = refined_weights(document, *d.binding);
 }
 
 std::vector<DualComplex<float>> transformations_of(const Document& document) {
@@ -61,19 +86,17 @@ void pose(Deformation& d, const Document& document, std::shared_ptr<const Bindin
     auto transformations = transformations_of(document);
     const bool same_pose =
         !rebound && d.transformations == transformations && d.source.blend == document.blend;
-    const bool was_refined = !d.refined.empty(), refined = is_refined(document);
-    const bool only_paint = !rebound && was_refined && refined && same_but_paint(d.source, document);
+    const bool in_runs =
+        !rebound && same_pose && is_refined(document) && differ_by_vertex(d.source, document);
     if (!d.binding || d.binding->mesh != binding->mesh) ++d.mesh_version;
     d.binding = std::move(binding);
     d.transformations = std::move(transformations);
     d.now.resize(mesh_of(d).rest.size());
-    if (only_paint && same_pose && !document.stiffness) {
-        repaint(d, document);
+    if (in_runs) {
+        if (d.refined.empty()) d.refined = d.binding->automatic;
+        refine_runs(d, document, changed_runs(d.source, document, mesh_of(d)));
     } else {
-        if (!refined)
-            d.refined = {};
-        else if (!only_paint || repainted(d.source, document, mesh_of(d)).size() > 0)
-            d.refined = refined_weights(document, *d.binding);
+        refine(d, document, rebound);
         d.cancelled = deform_run(d, document, {0, d.now.size()});
     }
     d.moved = !std::all_of(document.probes.begin(), document.probes.end(), at_rest);
