@@ -71,6 +71,7 @@ struct App {
     Theme theme = dark_theme();
     Fonts fonts;
     float scale = 1;
+    glm::dvec2 cursor{0};  ///< window pixels: at the last event
     Shown shown;
     PicturePtr uploaded;  ///< the picture that the renderer holds
     double deform_milliseconds = 0;

@@ -37,15 +37,14 @@ float wanted_scale(GLFWmonitor* monitor) {
     return std::clamp(x, 0.5f, 4.0f);
 }
 
-/// The pointer in canvas pixels, with the keys that are held.
+/// The pointer in canvas pixels, with the keys that are held. Where it was at the event: asked now, the
+/// display would say where it has got to since, and a quick hand would press beside what it meant.
 PointerEvent pointer_event(const App& app, Button button = Button::left) {
-    double x = 0, y = 0;
-    glfwGetCursorPos(app.window, &x, &y);
     const auto held = [&app](int left, int right) {
         return glfwGetKey(app.window, left) == GLFW_PRESS || glfwGetKey(app.window, right) == GLFW_PRESS;
     };
     PointerEvent event;
-    event.at = {x - double(canvas_corner(app).x), y - double(canvas_corner(app).y)};
+    event.at = app.cursor - glm::dvec2(canvas_corner(app).x, canvas_corner(app).y);
     event.button = button;
     event.shift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
     event.ctrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
@@ -65,9 +64,10 @@ bool on_canvas(const App& app, glm::dvec2 at) {
     });
 }
 
-void on_move(GLFWwindow* window, double, double) {
+void on_move(GLFWwindow* window, double x, double y) {
     App& app = app_of(window);
     app.wake();
+    app.cursor = {x, y};
     const PointerEvent event = pointer_event(app);
     const bool drags = app.editor.gesture && app.editor.gesture->kind != Gesture::Kind::field;
     if (drags || on_canvas(app, event.at))
