@@ -38,20 +38,15 @@ void refresh(Editor& editor) {
     if (!has_picture(editor) || defers_deformation(editor)) return;
     auto& deformation = editor.deformation;
     if (!editor.binds_elsewhere) return update(deformation, editor.document);
-    // A stroke keeps the mesh that it began on.
-    if (editor.gesture && editor.gesture->stroke) {
-        if (fits(deformation.binding.get(), editor.document))
-            pose(deformation, editor.document, deformation.binding);
-        return;
-    }
-    auto binding = std::exchange(editor.next_binding, nullptr);
+    const bool strokes =
+        editor.gesture && editor.gesture->stroke;  // a stroke keeps the mesh that it began on
+    auto binding = strokes ? nullptr : std::exchange(editor.next_binding, nullptr);
     if (!fits(binding.get(), editor.document)) binding = deformation.binding;
     if (fits(binding.get(), editor.document)) pose(deformation, editor.document, std::move(binding));
 }
 
 bool is_deformed(const Editor& editor) {
-    const Binding* binding = editor.deformation.binding.get();
-    return is_bound(binding, editor.document) && fits(binding, editor.document) &&
+    return is_bound(editor.deformation.binding.get(), editor.document) &&
            editor.deformation.source == editor.document;
 }
 

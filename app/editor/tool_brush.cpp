@@ -1,5 +1,6 @@
 // Paints the chosen probe's weights, or with the pin the picture's stiffness.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "editor/painting.h"
@@ -32,9 +33,8 @@ glm::dvec2 axis_grip(const Editor& editor) {
 }
 
 std::span<const glm::vec2> shown_positions(const Editor& editor) {
-    const bool still = editor.gesture && editor.gesture->stroke && !editor.gesture->stroke->still.empty() &&
-                       editor.gesture->stroke->binding == editor.deformation.binding;
-    return still ? editor.gesture->stroke->still : editor.deformation.now;
+    const PaintStroke* stroke = editor.gesture ? editor.gesture->stroke.get() : nullptr;
+    return stroke && !stroke->still.empty() ? stroke->still : editor.deformation.now;
 }
 
 bool defers_deformation(const Editor& editor) {
@@ -188,8 +188,7 @@ void drag_brush(Editor& editor, const PointerEvent& event) {
     }
     refresh(editor);  // the picture follows the stroke, and the stroke the picture
     PaintStroke& stroke = *gesture.stroke;
-    if (stroke.binding != editor.deformation.binding)
-        return;  // the mesh changed under the hand: no more dabs
+    assert(stroke.binding == editor.deformation.binding);  // refresh keeps it
     for (const glm::dvec2 point : dabs_between(stroke.last, to_image(editor.view, event.at), stroke.brush)) {
         fall_at(editor, stroke, point);
         stroke.last = point;

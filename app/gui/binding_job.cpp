@@ -25,10 +25,9 @@ void start(App& app, const std::shared_ptr<const Binding>& before) {
     });
 }
 
-/// Takes what the job has, where it is there within `patience`. False while it is not.
-bool finish(App& app, std::chrono::milliseconds patience) {
-    BindingJob& job = *app.binding_job;
-    if (job.result.wait_for(patience) != std::future_status::ready) return false;
+/// Takes what the job has, where it is there within `patience`.
+void finish(App& app, std::chrono::milliseconds patience) {
+    if (app.binding_job->result.wait_for(patience) != std::future_status::ready) return;
     const std::unique_ptr<BindingJob> ended = std::move(app.binding_job);
     app.wake();
     try {
@@ -45,7 +44,6 @@ bool finish(App& app, std::chrono::milliseconds patience) {
         app.unbound_reason = error.what();
         say(app, Tone::error, app.unbound_reason);
     }
-    return true;
 }
 
 /// Leaves the job to come to its end by itself. What it has of the last binding's cache it still uses, so the
@@ -56,38 +54,34 @@ void abandon(App& app) {
     app.last_binding.reset();
 }
 
+/// Whether the binding that was worked out last failed, and would again.
+bool is_unbindable(const App& app) { return app.unbound && binds_alike(*app.unbound, app.editor.document); }
+
 bool wants_binding(const App& app) {
     const Editor& editor = app.editor;
-    if (is_deformation_ready(app) || (editor.gesture && editor.gesture->stroke)) return false;
-    if (editor.next_binding && is_bound(editor.next_binding.get(), editor.document)) return false;
+    for (const auto& binding : {editor.deformation.binding, editor.next_binding})
+        if (is_bound(binding.get(), editor.document)) return false;
+    if (editor.gesture && editor.gesture->stroke) return false;  // a stroke keeps the mesh that it began on
     // One that cannot be interrupted where it is may still have all its memory: not one more each time.
-    return app.abandoned_jobs.size() < 2 && !(app.unbound && binds_alike(*app.unbound, editor.document));
+    return app.abandoned_jobs.size() < 2 && !is_unbindable(app);
 }
 
 }  // namespace
 
-bool is_deformation_ready(const App& app) {
-    const Binding* binding = app.editor.deformation.binding.get();
-    return is_bound(binding, app.editor.document) && fits(binding, app.editor.document);
-}
-
 std::string why_not_deformed(const App& app) {
-    if (is_deformation_ready(app)) return {};
-    const bool failed = app.unbound && binds_alike(*app.unbound, app.editor.document);
-    return failed ? "The weights cannot be worked out: " + app.unbound_reason
-                  : "The weights are still being worked out.";
+    if (is_deformed(app.editor)) return {};
+    return is_unbindable(app) ? "The weights cannot be worked out: " + app.unbound_reason
+                              : "The weights are still being worked out.";
 }
 
 void update_deformation(App& app) {
     Editor& editor = app.editor;
     if (app.binding_job) {
         // What was replaced meanwhile is not worth waiting for; a probe that is still being dragged is.
-        const Document& bound = app.binding_job->document;
-        if (bound.picture != editor.document.picture || !(bound.mesh == editor.document.mesh) ||
-            !(bound.weights == editor.document.weights))
-            abandon(app);
-        else
+        if (same_means(app.binding_job->document, editor.document))
             finish(app, 0ms);
+        else
+            abandon(app);
     }
     std::erase_if(app.abandoned_jobs,
                   [](const auto& job) { return job->result.wait_for(0ms) == std::future_status::ready; });

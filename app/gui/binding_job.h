@@ -33,10 +33,7 @@ struct BindingJob {
 /// once; meanwhile the last one goes on deforming, where it fits.
 void update_deformation(App& app);
 
-/// Whether the deformation is what the document says, not one that waits for its binding.
-bool is_deformation_ready(const App& app);
-
-/// A sentence on why it is not; empty where it is.
+/// A sentence on why the deformation is not the document's own (is_deformed); empty where it is.
 std::string why_not_deformed(const App& app);
 
 }  // namespace probewarp

@@ -364,8 +364,11 @@ void wait_for_events(App& app) {
     if (app.frames_wanted > 0) return glfwPollEvents();
     const double message = next_message_change(app);
     const double caret = ImGui::GetIO().WantTextInput ? 0.3 : -1;  // a text field's caret blinks
-    // While weights are being worked out the status bar tells so, and sees when they are there.
-    if (app.binding_job) return glfwWaitEventsTimeout(0.1), app.wake();
+    // While weights are being worked out the status bar tells so; and what was given up is seen to end.
+    if (app.binding_job || !app.abandoned_jobs.empty()) {
+        glfwWaitEventsTimeout(0.1);
+        return app.wake();
+    }
     const double wait = message < 0 ? caret : caret < 0 ? message : std::min(message, caret);
     if (wait < 0)
         glfwWaitEvents();

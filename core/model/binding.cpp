@@ -12,15 +12,15 @@ bool same_probes(const Document& a, const Document& b, Same same) {
     return std::equal(a.probes.begin(), a.probes.end(), b.probes.begin(), b.probes.end(), same);
 }
 
-bool same_mesh(const Document& a, const Document& b) {
-    return a.picture == b.picture && a.mesh == b.mesh &&
-           same_probes(a, b, [](const Probe& p, const Probe& q) { return p.rest == q.rest; });
+bool same_ids(const Document& a, const Document& b) {
+    return same_probes(a, b, [](const Probe& p, const Probe& q) { return p.id == q.id; });
 }
 
-/// How many probes a vertex may follow is decided afterwards, with the paint.
-bool same_weights(const WeightSettings& a, const WeightSettings& b) {
-    return a.scheme == b.scheme && a.exponent == b.exponent && a.falloff == b.falloff;
+bool same_rests(const Document& a, const Document& b) {
+    return same_probes(a, b, [](const Probe& p, const Probe& q) { return p.rest == q.rest; });
 }
+
+bool same_grid(const Document& a, const Document& b) { return a.picture == b.picture && a.mesh == b.mesh; }
 
 std::shared_ptr<const Mesh> mesh_for(const Document& document, std::span<const std::uint8_t> kept) {
     std::vector<glm::dvec2> rests;
@@ -31,8 +31,14 @@ std::shared_ptr<const Mesh> mesh_for(const Document& document, std::span<const s
 
 }  // namespace
 
+bool same_means(const Document& a, const Document& b) {
+    // How many probes a vertex may follow is decided afterwards, with the paint.
+    return same_grid(a, b) && a.weights.scheme == b.weights.scheme &&
+           a.weights.exponent == b.weights.exponent && a.weights.falloff == b.weights.falloff;
+}
+
 bool binds_alike(const Document& a, const Document& b) {
-    return same_mesh(a, b) && same_weights(a.weights, b.weights) &&
+    return same_means(a, b) && same_ids(a, b) && same_rests(a, b) &&
            same_probes(a, b, [](const Probe& p, const Probe& q) { return p.radius == q.radius; });
 }
 
@@ -41,9 +47,7 @@ bool is_bound(const Binding* binding, const Document& document) {
 }
 
 bool fits(const Binding* binding, const Document& document) {
-    return binding && binding->source.picture == document.picture &&
-           same_probes(binding->source, document,
-                       [](const Probe& p, const Probe& q) { return p.id == q.id; });
+    return binding && binding->source.picture == document.picture && same_ids(binding->source, document);
 }
 
 std::shared_ptr<const Binding> make_binding(const Document& document,
@@ -53,9 +57,8 @@ std::shared_ptr<const Binding> make_binding(const Document& document,
     check_size(document);
     auto binding = std::make_shared<Binding>();
     binding->source = document;
-    const bool keep_mesh = before && same_mesh(before->source, document);
-    const bool keep_cells =
-        before && before->source.picture == document.picture && before->source.mesh == document.mesh;
+    const bool keep_cells = before && same_grid(before->source, document);
+    const bool keep_mesh = keep_cells && same_rests(before->source, document);
     binding->kept = keep_cells ? before->kept : visible_cells(document.picture->image, document.mesh);
     binding->mesh = keep_mesh ? before->mesh : mesh_for(document, binding->kept);
     binding->islands = keep_mesh ? before->islands : islands_of(*binding->mesh);

@@ -22,13 +22,18 @@ struct Binding {
     std::shared_ptr<WeightCache> cache;  ///< likewise
 };
 
-/// Whether two documents have the same binding, but for the probes' ids.
+/// Whether two documents are bound by the same means: the same picture, mesh settings and scheme. What may
+/// differ is where their probes rest.
+bool same_means(const Document& a, const Document& b);
+
+/// Whether two documents have the same binding.
 bool binds_alike(const Document& a, const Document& b);
 
 /// Whether `binding` (may be null) is what make_binding would give for `document`.
 bool is_bound(const Binding* binding, const Document& document);
 
-/// Whether `binding` has a column for each of the document's probes: it can deform, if not as it should.
+/// Whether `binding` (may be null) has a column for each of the document's probes: it can deform, if not as
+/// it should.
 bool fits(const Binding* binding, const Document& document);
 
 /// Works out the binding; `before` (may be null) gives what can be used again, and must not be bound from

@@ -86,8 +86,7 @@ void pose(Deformation& d, const Document& document, std::shared_ptr<const Bindin
     auto transformations = transformations_of(document);
     const bool same_pose =
         !rebound && d.transformations == transformations && d.source.blend == document.blend;
-    const bool in_runs =
-        !rebound && same_pose && is_refined(document) && differ_by_vertex(d.source, document);
+    const bool in_runs = same_pose && is_refined(document) && differ_by_vertex(d.source, document);
     if (!d.binding || d.binding->mesh != binding->mesh) ++d.mesh_version;
     d.binding = std::move(binding);
     d.transformations = std::move(transformations);
@@ -106,8 +105,7 @@ void pose(Deformation& d, const Document& document, std::shared_ptr<const Bindin
 
 void update(Deformation& deformation, const Document& document) {
     auto binding = deformation.binding;
-    if (!is_bound(binding.get(), document) || !fits(binding.get(), document))
-        binding = make_binding(document, binding);
+    if (!is_bound(binding.get(), document)) binding = make_binding(document, binding);
     pose(deformation, document, std::move(binding));
 }
 

@@ -129,8 +129,9 @@ TEST(Deform, VerticesWhoseWeightsCancelAreCountedAndFollowTheHeaviest) {
         // Of equals the first: the one at rest, or the one that moved by 7.
         for (const std::size_t v : {1u, 4u, 7u})
             // A whole turn in floats: 2e-7 of the 50 pixels to the probe, and as much again for the sum.
-            EXPECT_LT(distance(deformation.now[v], mesh_of(deformation).rest[v] + glm::vec2(second ? 0 : 7, 0)),
-                      3e-5);
+            EXPECT_LT(
+                distance(deformation.now[v], mesh_of(deformation).rest[v] + glm::vec2(second ? 0 : 7, 0)),
+                3e-5);
     }
 }
 
