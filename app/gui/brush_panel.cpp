@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
-#include "editor/paint_commands.h"
 #include "editor/painting.h"
 #include "gui/app.h"
 #include "gui/widgets.h"
@@ -75,13 +75,13 @@ void draw_brush_section(App& app) {
     tooltip("Strokes are painted on both sides of the axis (X), onto the probe that mirrors the chosen one");
     if (!editor.mirror) return;
     MirrorAxis axis = mirror_axis(editor);
-    double degrees = axis.angle * 180 / M_PI;
+    double degrees = axis.angle * 180 / std::numbers::pi;
     row_label(app, "Axis", label_width);
     const float width = (ImGui::GetContentRegionAvail().x - app.px(8)) / 2;
     const bool moved = number_field(app, "##axis", axis.point.x, "x", width, 0.5, -1e6, 1e6);
     ImGui::SameLine(0, app.px(8));
     const bool turned = number_field(app, "##angle", degrees, "°", width, 0.5, -80, 80);
-    axis.angle = degrees * M_PI / 180;
+    axis.angle = degrees * std::numbers::pi / 180;
     if (moved || turned) editor.axis = axis;
 }
 
@@ -154,41 +154,6 @@ void draw_weights_section(App& app) {
     row_label(app, "", label_width);
     check_box(app, "Iso-lines", editor.iso_lines);
     tooltip("A line at every tenth of the weight (I)");
-}
-
-void draw_levels_dialog(App& app) {
-    LevelsDialog& dialog = app.levels_dialog;
-    if (!dialog.open) return;
-    const char* title = "Levels";
-    if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize({app.px(360), 0});
-    if (!ImGui::BeginPopupModal(
-            title, nullptr,
-            ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings))
-        return;
-    const float width = ImGui::GetContentRegionAvail().x - app.px(label_width);
-    row_label(app, "Black", label_width);
-    if (slider_field(app, "##black", dialog.black, "", width, 0, 1))
-        dialog.white = std::max(dialog.white, dialog.black + 0.01);
-    row_label(app, "White", label_width);
-    if (slider_field(app, "##white", dialog.white, "", width, 0, 1))
-        dialog.black = std::min(dialog.black, dialog.white - 0.01);
-    row_label(app, "Gamma", label_width);
-    slider_field(app, "##gamma", dialog.gamma, "", width, 0.1, 4);
-    ImGui::TextDisabled("Weights up to black become 0, from white on 1.");
-    ImGui::Dummy({0, app.px(4)});
-    const bool escape = ImGui::IsKeyPressed(GLFW_KEY_ESCAPE) && !ImGui::IsAnyItemActive();
-    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - app.px(96) * 2 - app.px(8));
-    if (ImGui::Button("Cancel", {app.px(96), app.px(28)}) || escape) dialog.open = false;
-    ImGui::SameLine(0, app.px(8));
-    if (accent_button(app, "Apply", {app.px(96), app.px(28)})) {
-        dialog.open = false;
-        level_paint(app.editor, float(dialog.black), float(dialog.white), float(dialog.gamma));
-    }
-    if (!dialog.open) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
 }
 
 }  // namespace probewarp

@@ -11,7 +11,4 @@ void draw_brush_section(App& app);
 /// The heat map's colours, the chosen probe's weight under the cursor, and how they are shown.
 void draw_weights_section(App& app);
 
-/// The dialog that asks for levels.
-void draw_levels_dialog(App& app);
-
 }  // namespace probewarp

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "editor/paint_commands.h"
 #include "gui/actions.h"
 #include "gui/app.h"
 #include "gui/widgets.h"
@@ -196,6 +197,32 @@ void draw_export_dialog(App& app) {
         dialog.open = false;
         ImGui::CloseCurrentPopup();
     }
+    ImGui::EndPopup();
+}
+
+void draw_levels_dialog(App& app) {
+    LevelsDialog& dialog = app.levels_dialog;
+    if (!dialog.open || !begin_dialog(app, "Levels", 360)) return;
+    constexpr float label = 76;
+    const float width = ImGui::GetContentRegionAvail().x - app.px(label);
+    row_label(app, "Black", label);
+    if (slider_field(app, "##black", dialog.black, "", width, 0, 0.99))
+        dialog.white = std::max(dialog.white, dialog.black + 0.01);
+    row_label(app, "White", label);
+    if (slider_field(app, "##white", dialog.white, "", width, 0.01, 1))
+        dialog.black = std::min(dialog.black, dialog.white - 0.01);
+    row_label(app, "Gamma", label);
+    slider_field(app, "##gamma", dialog.gamma, "", width, 0.1, 4);
+    ImGui::TextDisabled("Weights up to black become 0, from white on 1.");
+    ImGui::Dummy({0, app.px(4)});
+    align_buttons(app, 2, 108);
+    if (ImGui::Button("Cancel", {app.px(108), app.px(28)}) || escape_pressed()) dialog.open = false;
+    ImGui::SameLine();
+    if (accent_button(app, "Apply", {app.px(108), app.px(28)})) {
+        dialog.open = false;
+        level_paint(app.editor, float(dialog.black), float(dialog.white), float(dialog.gamma));
+    }
+    if (!dialog.open) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }
 

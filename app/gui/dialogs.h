@@ -1,4 +1,4 @@
-// The dialogs: questions, the export's settings, about.
+// The dialogs: questions, the export's settings, levels of weights, about.
 #pragma once
 
 namespace probewarp {
@@ -7,6 +7,7 @@ struct App;
 
 void draw_questions(App& app);
 void draw_export_dialog(App& app);
+void draw_levels_dialog(App& app);
 void draw_about(App& app);
 
 }  // namespace probewarp

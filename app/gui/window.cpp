@@ -14,7 +14,6 @@
 #include "editor/commands.h"
 #include "gui/actions.h"
 #include "gui/app.h"
-#include "gui/brush_panel.h"
 #include "gui/canvas.h"
 #include "gui/dialogs.h"
 #include "gui/panels.h"

@@ -1,4 +1,4 @@
-#include "gui/overlay.h"
+#include "gui/shown_weights.h"
 
 #include "editor/painting.h"
 #include "render/overlay.h"
