@@ -3,18 +3,28 @@
 // Transformation" (arXiv 1601.01754), here "MKO"; numbers in brackets are its sections and equations.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <glm/vec2.hpp>
-#include <limits>
 #include <numbers>
 
+#include "math/sinc.h"
+#include "math/transformation.h"
+
 namespace probewarp {
+
+template <class T>
+struct DualComplexLog;
 
 /// p0 + p1 e with complex p0, p1, where e e = 0 and e z = ~z e (MKO section 3).
 /// A unit DCN (|p0| = 1) is a rigid transformation; p and -p are the same one.
 template <class T>
 struct DualComplex {
+    using Scalar = T;
+    using Point = std::complex<T>;
+    using Log = DualComplexLog<T>;
+
     std::complex<T> p0{T(1)};
     std::complex<T> p1{T(0)};
 
@@ -54,6 +64,13 @@ T norm(const DualComplex<T>& p) {
     return std::abs(p.p0);
 }
 
+/// Re(p0 ~q0), the dot product of the parts that turn: |p|^2 with itself; below 0 where p and -q are nearer
+/// than p and q.
+template <class T>
+T rotation_dot(const DualComplex<T>& p, const DualComplex<T>& q) {
+    return p.p0.real() * q.p0.real() + p.p0.imag() * q.p0.imag();
+}
+
 /// p / |p|. Requires p0 != 0.
 template <class T>
 DualComplex<T> normalised(const DualComplex<T>& p) {
@@ -86,20 +103,35 @@ DualComplex<T> translation(std::complex<T> d) {
     return {std::complex<T>(T(1)), d / T(2)};
 }
 
-/// sin(h) / h, with its Taylor polynomial below fourth_root(epsilon), where the next term is below one ulp.
-template <class T>
-T sinc(T h) {
-    static const T threshold = std::sqrt(std::sqrt(std::numeric_limits<T>::epsilon()));
-    if (std::abs(h) < threshold) return T(1) - h * h / T(6);
-    return std::sin(h) / h;
-}
-
 /// An element i h + p1 e of the Lie algebra: h is half the angle.
 template <class T>
 struct DualComplexLog {
     T h{};
     std::complex<T> p1{};
+
+    friend constexpr bool operator==(const DualComplexLog&, const DualComplexLog&) = default;
 };
+
+template <class T>
+DualComplexLog<T> operator+(const DualComplexLog<T>& x, const DualComplexLog<T>& y) {
+    return {x.h + y.h, x.p1 + y.p1};
+}
+
+template <class T>
+DualComplexLog<T> operator*(T s, const DualComplexLog<T>& x) {
+    return {s * x.h, s * x.p1};
+}
+
+/// h, Re p1, Im p1: a basis of the algebra.
+template <class T>
+std::array<T, 3> coordinates(const DualComplexLog<T>& x) {
+    return {x.h, x.p1.real(), x.p1.imag()};
+}
+
+template <class T>
+DualComplexLog<T> from_coordinates(const std::array<T, 3>& x) {
+    return {x[0], {x[1], x[2]}};
+}
 
 /// exp(i h + p1 e) = e^{ih} + (sin h / h) p1 e (MKO section 5).
 template <class T>
@@ -114,17 +146,6 @@ DualComplexLog<T> log(const DualComplex<T>& p) {
     T h = std::arg(p.p0);
     if (h >= std::numbers::pi_v<T>) h = -std::numbers::pi_v<T>;
     return {h, p.p1 / sinc(h)};
-}
-
-template <class T>
-DualComplexLog<T> operator*(T s, const DualComplexLog<T>& x) {
-    return {s * x.h, s * x.p1};
-}
-
-/// exp(t log(q p^-1)) p: from p at t = 0 to q at t = 1 at constant speed (MKO 5.1).
-template <class T>
-DualComplex<T> slerp(const DualComplex<T>& p, const DualComplex<T>& q, T t) {
-    return exp(t * log(q * inverse(p))) * p;
 }
 
 template <class To, class From>

@@ -22,7 +22,7 @@ struct BlendTest : ::testing::Test {
         std::vector<DualComplex<T>> p;
         T share = 0;  ///< |sum w_i p_i| / sum w_i: how well the direction of the sum is known
 
-        Blend<T> blend() const { return dlb<T>(weights, p); }
+        Blend<DualComplex<T>> blend() const { return dlb<DualComplex<T>>(weights, p); }
         /// Sums of up to 8 DCNs of up to 15 in size, a product of two and a division: 40 roundings of numbers
         /// up to 30, all of which the division by the share makes larger.
         T rounding() const { return 40 * 30 * epsilon / 2 / share; }
@@ -105,11 +105,11 @@ TYPED_TEST(BlendTest, FollowsTheHeaviestWhereTheWeightsCancel) {
     expect_always("p and -p of equal weights give the first of the heaviest, and say so", [] {
         const auto p = *unit_dcn<T>(size);
         const T w = T(*real(0.01, 1));
-        const auto two = dlb<T>(std::vector<T>{w, w}, std::vector{p, -p});
+        const auto two = dlb<DualComplex<T>>(std::vector<T>{w, w}, std::vector{p, -p});
         RC_ASSERT(two.cancelled && two.p == p);
-        const auto swapped = dlb<T>(std::vector<T>{w, w}, std::vector{-p, p});
+        const auto swapped = dlb<DualComplex<T>>(std::vector<T>{w, w}, std::vector{-p, p});
         RC_ASSERT(swapped.cancelled && swapped.p == -p);
-        const auto three = dlb<T>(std::vector<T>{w, 2 * w, w}, std::vector{p, -p, p});
+        const auto three = dlb<DualComplex<T>>(std::vector<T>{w, 2 * w, w}, std::vector{p, -p, p});
         RC_ASSERT(three.cancelled && three.p == -p);
     });
 }
@@ -119,7 +119,7 @@ TYPED_TEST(BlendTest, CancelsBelowAMillionthAndNotAbove) {
     // Weights 1 and 1 - d on 1 and -1 leave d of 2 - d. Float rounds 1 - d by 3e-8, 3 per cent of the
     // millionth.
     const std::vector<DualComplex<T>> p{{}, -DualComplex<T>{}};
-    const auto blend = [&p](double d) { return dlb<T>(std::vector<T>{T(1 - d), T(1)}, p); };
+    const auto blend = [&p](double d) { return dlb<DualComplex<T>>(std::vector<T>{T(1 - d), T(1)}, p); };
     EXPECT_TRUE(blend(1.9e-6).cancelled);
     EXPECT_EQ(blend(1.9e-6).p, p[1]);
     EXPECT_FALSE(blend(2.1e-6).cancelled);
@@ -138,7 +138,7 @@ TEST(Blend, HalfwayBetweenNothingAndAQuarterTurnIsAnEighth) {
     // (1 + e^{i pi/4}) / |1 + e^{i pi/4}| = e^{i pi/8}, about the same centre.
     const std::complex<double> centre{5, -3};
     const auto turned = rotation(std::numbers::pi / 2, centre);
-    const auto blend = dlb<double>(std::vector{2.0, 2.0}, std::vector{DualComplex<double>{}, turned}).p;
+    const auto blend = dlb<DualComplex<double>>(std::vector{2.0, 2.0}, std::vector{DualComplex<double>{}, turned}).p;
     const auto expected = rotation(std::numbers::pi / 4, centre);
     EXPECT_LT(std::abs(blend.p0 - expected.p0), 1e-15);  // a few roundings of numbers up to 1
     EXPECT_LT(std::abs(blend.p1 - expected.p1), 1e-14);  // ... and of numbers up to 6
