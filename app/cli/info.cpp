@@ -109,8 +109,9 @@ void print_text(const Json& json) {
                json["alpha"].get<bool>() ? ", with transparency" : "");
     print_mesh(json["mesh"]);
     print_weights(json["weights"]);
-    fmt::print("blend: {}; vertices whose weights cancel: {}\n", text("blend"),
-               json["cancelled_vertices"].get<std::size_t>());
+    fmt::print(
+        "blend: {}; vertices for which it has no answer, so that they follow their heaviest probe: {}\n",
+        text("blend"), json["cancelled_vertices"].get<std::size_t>());
     fmt::print("stiffness: {}\n", json["stiffness"].get<bool>() ? "painted" : "none");
     fmt::print("probes: {}\n", json["probes"].size());
     for (const Json& p : json["probes"])

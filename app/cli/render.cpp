@@ -84,6 +84,13 @@ void show_heat(Renderer& renderer, const Deformation& deformation, const RenderO
     renderer.set_overlay(weight_overlay(deformation, probe), style);
 }
 
+void check_deform(const RenderOptions& o, const Document& document) {
+    if (o.deform == "shader" && document.blend != "dlb")
+        throw UsageError(fmt::format(
+            "--deform shader: the shader blends by dlb only, this is {}; expected --deform processor",
+            document.blend));
+}
+
 void check_heat(const RenderOptions& o, Kind kind, const Document& document) {
     if (o.heat.empty()) {
         if (o.opacity || o.iso_lines)
@@ -159,6 +166,7 @@ void render(const RenderOptions& o) {
     const OutputFormat format = output_format(o);
     const ExportSettings settings = export_settings(o);
     const Document document = document_of(o);
+    check_deform(o, document);
     check_heat(o, format.kind, document);
     std::error_code ignored;
     if (format.kind != Kind::project && o.output != "-" &&

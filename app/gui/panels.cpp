@@ -190,7 +190,7 @@ std::string facts(const App& app) {
     if (app.binding_job && ImGui::GetTime() - app.binding_job->since > 0.1)
         text = "working out the weights… · " + text;
     if (editor.deformation.cancelled > 0)
-        text = fmt::format("weights cancel at {} vertices · {}", grouped(editor.deformation.cancelled), text);
+        text = fmt::format("no blend at {} vertices · {}", grouped(editor.deformation.cancelled), text);
     return text;
 }
 

@@ -31,6 +31,8 @@ struct Motion {
     DualComplex<T> p;          ///< as turned: p0 = e^{i angle/2}
     std::complex<T> less_one;  ///< e^{i angle} - 1; exactly 0 without a turn
     std::complex<T> shift;     ///< exactly 0 where nothing moves
+
+    friend bool operator==(const Motion&, const Motion&) = default;
 };
 
 template <class T>
@@ -47,6 +49,9 @@ struct Similarity {
     std::complex<T> less_one;  ///< a - 1
     std::complex<T> shift;     ///< b
     bool cancelled = false;    ///< the weights had no blend: this is the heaviest motion
+    /// e^{i angle/2} times any length, as turned: it tells turns apart that differ by 2 pi, as less_one
+    /// cannot. 0 for a blend that knows only the turn.
+    std::complex<T> half{};
 };
 
 template <class T>
@@ -56,13 +61,13 @@ std::complex<T> act(const Similarity<T>& s, std::complex<T> v) {
 
 template <class T>
 Similarity<T> similarity(const Motion<T>& m) {
-    return {m.less_one, m.shift};
+    return {m.less_one, m.shift, false, m.p.p0};
 }
 
 /// Of a unit DCN: p0^2 v + 2 p0 p1, with p0^2 - 1 = 2i Im(p0) p0.
 template <class T>
 Similarity<T> similarity(const DualComplex<T>& p) {
-    return {std::complex<T>(T(0), T(2) * p.p0.imag()) * p.p0, T(2) * (p.p0 * p.p1)};
+    return {std::complex<T>(T(0), T(2) * p.p0.imag()) * p.p0, T(2) * (p.p0 * p.p1), false, p.p0};
 }
 
 }  // namespace probewarp

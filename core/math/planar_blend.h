@@ -43,7 +43,7 @@ auto mean(std::span<const W> weights, std::span<const Motion<T>> motions, F f) {
 template <class T>
 Similarity<T> normalised_action(const DualComplex<T>& s) {
     const T scale = T(2) / std::norm(s.p0);
-    return {scale * (s.p0 * std::complex<T>(T(0), s.p0.imag())), scale * (s.p0 * s.p1)};
+    return {scale * (s.p0 * std::complex<T>(T(0), s.p0.imag())), scale * (s.p0 * s.p1), false, s.p0};
 }
 
 /// DLB, as turned.
@@ -102,7 +102,7 @@ Similarity<T> planar_dib(std::span<const W> weights, std::span<const Motion<T>> 
         size += std::abs(a);
     }
     if (!(std::abs(sum) >= cancelled_share<T> * size)) return follow_heaviest(weights, motions);
-    return {turn_less_one(m), shift / sum};
+    return {turn_less_one(m), shift / sum, false, std::conj(back)};
 }
 
 /// The shift in the logarithm of a motion: l with V(angle) l its shift, and so V^-1 of its way less i angle
@@ -130,16 +130,17 @@ Similarity<T> planar_log_linear(std::span<const W> weights, std::span<const Moti
     // A motion without a logarithm has no weight here: whatever is added for it must be finite.
     const auto l =
         mean(weights, motions, [](const auto& x) { return has_no_log(x) ? x.shift : log_shift(x); });
-    return {turn_less_one(m), left_jacobian(m) * l};
+    return {turn_less_one(m), left_jacobian(m) * l, false, std::polar(T(1), m / T(2))};
 }
 
 /// Spiral: with m = sum w_i t_i, v' = sum w_i (R(m)(v - rest_i) + now_i). Any number of turns, and no pole.
 template <class W, class T>
 Similarity<T> spiral(std::span<const W> weights, std::span<const Motion<T>> motions) {
-    const auto less_one = turn_less_one(mean(weights, motions, [](const auto& x) { return x.angle; }));
+    const T m = mean(weights, motions, [](const auto& x) { return x.angle; });
+    const auto less_one = turn_less_one(m);
     const auto rest = mean(weights, motions, [](const auto& x) { return x.rest; });
     const auto way = mean(weights, motions, [](const auto& x) { return x.now - x.rest; });
-    return {less_one, way - less_one * rest};
+    return {less_one, way - less_one * rest, false, std::polar(T(1), m / T(2))};
 }
 
 /// Linear blending: sum w_i (R(t_i)(v - rest_i) + now_i), the baseline of both papers (MKO section 1). It

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "math/blend.h"
+#include "math/planar_blend.h"
 
 namespace probewarp {
 
@@ -18,11 +18,31 @@ glm::vec2 displacement(float a, float b, float c, float d, glm::vec2 v) {
     return {scale * (a * x - b * y), scale * (a * y + b * x)};
 }
 
+/// Deforms by any blend, vertex by vertex, in double.
+template <Similarity<double> (*blend)(std::span<const float>, std::span<const Motion<double>>)>
+std::size_t deform_by(std::span<const glm::vec2> rest, std::span<const float> weights, const Pose& pose,
+                      std::span<glm::vec2> now) {
+    const std::size_t probes = pose.motions.size();
+    assert(now.size() == rest.size() && weights.size() == rest.size() * probes);
+    if (probes == 0) {
+        std::copy(rest.begin(), rest.end(), now.begin());
+        return 0;
+    }
+    std::size_t cancelled = 0;
+    for (std::size_t v = 0; v < rest.size(); ++v) {
+        const Similarity<double> map = blend(weights.subspan(v * probes, probes), pose.motions);
+        const auto place = to_complex(glm::dvec2(rest[v] - pose.centre));
+        now[v] = rest[v] + glm::vec2(to_vec(map.less_one * place + map.shift));
+        cancelled += map.cancelled;
+    }
+    return cancelled;
+}
+
 }  // namespace
 
-std::size_t deform_dlb(std::span<const glm::vec2> rest, std::span<const float> weights,
-                       std::span<const DualComplex<float>> transformations, glm::vec2 centre,
+std::size_t deform_dlb(std::span<const glm::vec2> rest, std::span<const float> weights, const Pose& pose,
                        std::span<glm::vec2> now) {
+    const std::span transformations = pose.transformations;
     const std::size_t probes = transformations.size();
     assert(now.size() == rest.size() && weights.size() == rest.size() * probes);
     if (probes == 0) {
@@ -47,15 +67,38 @@ std::size_t deform_dlb(std::span<const glm::vec2> rest, std::span<const float> w
             a = p.p0.real(), b = p.p0.imag(), c = p.p1.real(), d = p.p1.imag();
             ++cancelled;
         }
-        now[v] = rest[v] + displacement(a, b, c, d, rest[v] - centre);
+        now[v] = rest[v] + displacement(a, b, c, d, rest[v] - pose.centre);
     }
     return cancelled;
 }
 
 std::span<const BlendMethod> blend_methods() {
-    static constexpr std::array<BlendMethod, 1> methods{
-        {{"dlb", "DLB: keeps shapes rigid", &deform_dlb,
-          [](auto weights, auto p) { return dlb(weights, p).p; }}}};
+    static constexpr std::array<BlendMethod, 8> methods{{
+        {"dlb", "DLB, as turned",
+         "The usual choice: quick, rigid, and each probe turns the picture the way it was turned itself.",
+         &deform_dlb, &planar_dlb},
+        {"dlb-shortest", "DLB, shortest way",
+         "When only matters where a probe points, not how it got there: turns go the short way round.",
+         &deform_by<planar_dlb_shortest>, &planar_dlb_shortest},
+        {"dib", "DIB, the exact mean",
+         "When a turn is to spread evenly between probes: the exact mean of their motions; not for whole "
+         "turns.",
+         &deform_by<planar_dib>, &planar_dib},
+        {"log-linear", "Logarithm at the centre",
+         "When the picture is to swirl about its own centre; probes' whole turns are beyond it.",
+         &deform_by<planar_log_linear>, &planar_log_linear},
+        {"spiral", "Spiral", "For twirls: any number of turns, spread evenly, and never a tear.",
+         &deform_by<spiral>, &spiral},
+        {"linear", "Linear",
+         "To match programs that blend matrices: what lies between probes turned apart shrinks.",
+         &deform_by<planar_linear>, &planar_linear},
+        {"mls-rigid", "Moving least squares, rigid",
+         "When probes are dragged, not turned: how they moved to each other turns the picture.",
+         &deform_by<mls_rigid>, &mls_rigid},
+        {"mls-similarity", "Moving least squares, similar",
+         "The same, and what probes are pulled apart from each other grows.", &deform_by<mls_similarity>,
+         &mls_similarity},
+    }};
     return methods;
 }
 

@@ -45,8 +45,9 @@ std::size_t deform_run(Deformation& d, const Document& document, VertexRun run) 
     const std::size_t probes = document.probes.size();
     return find_blend_method(document.blend)
         ->deform(std::span(mesh_of(d).rest).subspan(run.first, run.count),
-                 weights_of(d).subspan(run.first * probes, run.count * probes), d.transformations,
-                 glm::vec2(centre(document.picture->image)), std::span(d.now).subspan(run.first, run.count));
+                 weights_of(d).subspan(run.first * probes, run.count * probes),
+                 {d.motions, d.transformations, glm::vec2(centre(document.picture->image))},
+                 std::span(d.now).subspan(run.first, run.count));
 }
 
 /// Works out the weights of some vertices anew, and where these go; the others must be where they belong.
@@ -70,10 +71,10 @@ void refine(Deformation& d, const Document& document, bool rebound) {
         d.refined = refined_weights(document, *d.binding);
 }
 
-std::vector<DualComplex<float>> transformations_of(const Document& document) {
-    std::vector<DualComplex<float>> all;
+std::vector<Motion<double>> motions_of(const Document& document) {
+    std::vector<Motion<double>> all;
     for (const Probe& probe : document.probes)
-        all.push_back(cast<float>(transformation(probe, centre(document.picture->image))));
+        all.push_back(motion_of(probe, centre(document.picture->image)));
     return all;
 }
 
@@ -83,13 +84,14 @@ void pose(Deformation& d, const Document& document, std::shared_ptr<const Bindin
     assert(fits(binding.get(), document));
     const bool rebound = d.binding != binding;
     if (!rebound && d.source == document) return;
-    auto transformations = transformations_of(document);
-    const bool same_pose =
-        !rebound && d.transformations == transformations && d.source.blend == document.blend;
+    auto motions = motions_of(document);
+    const bool same_pose = !rebound && d.motions == motions && d.source.blend == document.blend;
     const bool in_runs = same_pose && is_refined(document) && differ_by_vertex(d.source, document);
     if (!d.binding || d.binding->mesh != binding->mesh) ++d.mesh_version;
     d.binding = std::move(binding);
-    d.transformations = std::move(transformations);
+    d.motions = std::move(motions);
+    d.transformations.clear();
+    for (const auto& motion : d.motions) d.transformations.push_back(cast<float>(motion.p));
     d.now.resize(mesh_of(d).rest.size());
     if (in_runs) {
         if (d.refined.empty()) d.refined = d.binding->automatic;
@@ -130,17 +132,15 @@ std::optional<PicturePose> pose_at(const Deformation& deformation, glm::dvec2 po
     if (document.probes.empty()) return pose;
 
     const std::vector<double> shares = shares_at(deformation, *at);
-    const glm::dvec2 middle = centre(document.picture->image);
-    std::vector<DualComplex<double>> transformations;
     double mean = 0;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-        transformations.push_back(transformation(document.probes[i], middle));
-        mean += shares[i] * document.probes[i].angle;
-    }
-    const auto blended = find_blend_method(document.blend)->blend(shares, transformations);
-    // The blend knows the half angle up to whole turns of it; the probes' mean angle says which one is meant.
-    const double half = std::arg(blended.p0), turn = 2 * std::numbers::pi;
-    pose.angle = 2 * (half + turn * std::round((mean / 2 - half) / turn));
+    for (std::size_t i = 0; i < shares.size(); ++i) mean += shares[i] * document.probes[i].angle;
+    const auto blended = find_blend_method(document.blend)->blend(shares, deformation.motions);
+    // The blend knows the half angle, or at least the angle, up to whole turns of it; the probes' mean angle
+    // says which one is meant.
+    const bool knows_half = blended.half != std::complex<double>(0);
+    const double angle = knows_half ? 2 * std::arg(blended.half) : std::arg(1.0 + blended.less_one);
+    const double turn = (knows_half ? 4 : 2) * std::numbers::pi;
+    pose.angle = angle + turn * std::round((mean - angle) / turn);
     return pose;
 }
 

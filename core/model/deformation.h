@@ -16,9 +16,10 @@ struct Deformation {
     /// #vertices x #probes, row-major: the automatic weights with paint, stiffness and limits; empty where
     /// there are none of these.
     std::vector<float> refined;
-    std::vector<DualComplex<float>> transformations;  ///< #probes, about the picture's centre
+    std::vector<Motion<double>> motions;              ///< #probes, about the picture's centre
+    std::vector<DualComplex<float>> transformations;  ///< #probes: the motions' DCNs
     std::vector<glm::vec2> now;                       ///< #vertices, image pixels
-    std::size_t cancelled = 0;                        ///< vertices whose weights cancel
+    std::size_t cancelled = 0;                        ///< vertices for which the blend has no answer
     bool moved = false;                               ///< whether any probe has moved
     Document source;                                  ///< what all of this was worked out from
     unsigned long mesh_version = 0;                   ///< grows with every new mesh

@@ -4,9 +4,8 @@
 
 namespace probewarp {
 
-DualComplex<double> transformation(const Probe& probe, glm::dvec2 centre) {
-    return translation(to_complex(probe.now - probe.rest)) *
-           rotation(probe.angle, to_complex(probe.rest - centre));
+Motion<double> motion_of(const Probe& probe, glm::dvec2 centre) {
+    return motion(probe.angle, to_complex(probe.rest - centre), to_complex(probe.now - centre));
 }
 
 bool at_rest(const Probe& probe) { return probe.rest == probe.now && probe.angle == 0; }

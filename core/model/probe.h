@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "math/dual_complex.h"
+#include "math/motion.h"
 #include "model/paint.h"
 
 namespace probewarp {
@@ -39,9 +39,9 @@ struct Probe {
     friend bool operator==(const Probe&, const Probe&) = default;
 };
 
-/// The probe's transformation about `centre` (image pixels): turn by the angle about rest, then move rest to
-/// now. Exactly 1 for a probe that was not moved.
-DualComplex<double> transformation(const Probe& probe, glm::dvec2 centre);
+/// What the probe does to the plane about `centre` (image pixels): turn by the angle about rest, then move
+/// rest to now. Nothing at all, exactly, for a probe that was not moved.
+Motion<double> motion_of(const Probe& probe, glm::dvec2 centre);
 
 /// Whether the probe stands where it was put, unturned.
 bool at_rest(const Probe& probe);

@@ -36,9 +36,9 @@ void deform(benchmark::State& state) {
     const Document document = document_with(int(state.range(0)), int(state.range(1)));
     Deformation d;
     update(d, document);
-    const glm::vec2 middle(2048);
+    const Pose pose{d.motions, d.transformations, glm::vec2(2048)};
     for (auto _ : state) {
-        deform_dlb(mesh_of(d).rest, weights_of(d), d.transformations, middle, d.now);
+        deform_dlb(mesh_of(d).rest, weights_of(d), pose, d.now);
         benchmark::ClobberMemory();
     }
     const auto vertices = double(mesh_of(d).rest.size());

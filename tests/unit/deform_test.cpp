@@ -108,7 +108,8 @@ TEST(Deform, MayWriteOverItsInput) {
     add_probe(document, {400, 300}, {410, 330}, -1);
     const Deformation deformation = deformed(document);
     std::vector<glm::vec2> vertices = mesh_of(deformation).rest;
-    deform_dlb(vertices, weights_of(deformation), deformation.transformations, {320, 240}, vertices);
+    deform_dlb(vertices, weights_of(deformation),
+               {deformation.motions, deformation.transformations, {320, 240}}, vertices);
     EXPECT_EQ(vertices, deformation.now);
 }
 

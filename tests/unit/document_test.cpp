@@ -1,5 +1,6 @@
 // The document and its deformation: what is computed anew and what is kept, and the pose of the picture at a
 // place.
+#include "math/blend.h"
 #include "model/deformation.h"
 
 #include <limits>
@@ -218,12 +219,12 @@ TEST(PoseAt, ANewProbeThereChangesNothingUnderIt) {
         std::vector<float> weights(document.probes.size());
         inverse_distance_weights(document.probes, 2, pose->rest, weights);
         std::vector<DualComplex<double>> p;
-        for (const Probe& probe : document.probes) p.push_back(transformation(probe, {160, 100}));
-        const auto blend = blend_methods()[0].blend(std::vector<double>(weights.begin(), weights.end()), p);
+        for (const Probe& probe : document.probes) p.push_back(motion_of(probe, {160, 100}).p);
+        const auto blend = dlb<DualComplex<double>>(std::vector<double>(weights.begin(), weights.end()), p).p;
         Probe added = new_probe(document, pose->rest);
         added.now = at;
         added.angle = pose->angle;
-        const auto own = transformation(added, {160, 100});
+        const auto own = motion_of(added, {160, 100}).p;
         RC_ASSERT(std::abs(own.p0 - blend.p0) < 1e-12);  // same sign: the half angle counts
         // The deformed vertices are floats (3e-5 of 320 pixels), their weights too (6e-8 of probes 320
         // apart).

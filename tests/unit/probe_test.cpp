@@ -24,7 +24,7 @@ Probe probe_at(glm::dvec2 rest, glm::dvec2 now, double turned) {
 
 /// Where the probe takes a point of the picture, image pixels.
 glm::dvec2 moved(const Probe& probe, glm::dvec2 centre, glm::dvec2 point) {
-    return centre + to_vec(act(transformation(probe, centre), to_complex(point - centre)));
+    return centre + to_vec(act(motion_of(probe, centre).p, to_complex(point - centre)));
 }
 
 glm::dvec2 any_point(double size) { return {*real(-size, size), *real(-size, size)}; }
@@ -34,7 +34,7 @@ double distance(glm::dvec2 a, glm::dvec2 b) { return std::hypot(a.x - b.x, a.y -
 TEST(Probe, AtRestDoesExactlyNothing) {
     expect_always("the transformation of a probe that was not moved is 1", [] {
         const glm::dvec2 rest = any_point(1e5);
-        RC_ASSERT(transformation(probe_at(rest, rest, 0), any_point(1e4)) == DualComplex<double>{});
+        RC_ASSERT(motion_of(probe_at(rest, rest, 0), any_point(1e4)).p == DualComplex<double>{});
     });
 }
 
@@ -65,12 +65,12 @@ TEST(Probe, TurnsClockwiseAsSeen) {
 
 TEST(Probe, KnowsOneTurnFromTwo) {
     const glm::dvec2 rest{30, 40}, centre{10, 10};
-    const auto once = transformation(probe_at(rest, rest, 360 * degrees), centre);
-    const auto twice = transformation(probe_at(rest, rest, 720 * degrees), centre);
+    const auto once = motion_of(probe_at(rest, rest, 360 * degrees), centre).p;
+    const auto twice = motion_of(probe_at(rest, rest, 720 * degrees), centre).p;
     EXPECT_NEAR(once.p0.real(), -1, 1e-15);  // the angle's own rounding
     EXPECT_NEAR(twice.p0.real(), 1, 1e-15);
     // Halfway through 270 degrees is 135, not -45.
-    const auto three_quarters = transformation(probe_at(rest, rest, 270 * degrees), centre);
+    const auto three_quarters = motion_of(probe_at(rest, rest, 270 * degrees), centre).p;
     EXPECT_NEAR(std::arg(three_quarters.p0), 135 * degrees, 1e-15);
 }
 
