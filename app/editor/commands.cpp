@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 
+#include "editor/comparison.h"
 #include "editor/paint_commands.h"
 #include "editor/painting.h"
 #include "editor/tools.h"
@@ -177,6 +178,15 @@ constexpr Command all[] = {
      [](Editor& e) { e.show_mesh = !e.show_mesh; },
      false,
      [](const Editor& e) { return e.show_mesh; }},
+    {"View",
+     "Compare two blends",
+     {'2'},
+     &needs_picture,
+     [](Editor& e) {
+         compare_with(e, e.comparison ? "" : e.document.blend == "linear" ? "dlb" : "linear");
+     },
+     false,
+     [](const Editor& e) { return e.comparison.has_value(); }},
     {"View", "Light theme", {}, nullptr, &ask<Request::switch_theme>, true},
     {"Help", "About Probewarp", {}, nullptr, &ask<Request::about>},
 };

@@ -62,6 +62,8 @@ void cancel(Editor& editor) {
     }
     if (editor.gesture->kind == Gesture::Kind::pan) editor.view.corner = editor.gesture->start_corner;
     if (editor.gesture->kind == Gesture::Kind::brush_size) editor.brush.radius = editor.gesture->start_radius;
+    if (editor.gesture->kind == Gesture::Kind::divider && editor.comparison)
+        editor.comparison->divider = editor.gesture->start_divider;
     editor.document = std::move(editor.gesture->before);
     editor.gesture.reset();
     if (!selected_probe(editor)) editor.selected = 0;

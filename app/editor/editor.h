@@ -41,7 +41,7 @@ struct PaintStroke;
 
 /// What lasts from press to release: the document before it, and what is dragged.
 struct Gesture {
-    enum class Kind { pan, move, turn, reach, field, paint, brush_size, axis } kind = Kind::pan;
+    enum class Kind { pan, move, turn, reach, field, paint, brush_size, axis, divider } kind = Kind::pan;
     Document before;
     int probe = 0;
     PointerEvent pressed;                 ///< what began it
@@ -49,9 +49,18 @@ struct Gesture {
     glm::dvec2 start_corner{0};           ///< pan: the view's corner then
     double raw_angle = 0;                 ///< turn: radians, unwrapped, before snapping
     double start_radius = 0;              ///< brush_size: the brush's then, image pixels
+    double start_divider = 0;             ///< divider: where it was then
     std::shared_ptr<PaintStroke> stroke;  ///< paint
     std::string label;                    ///< of the step it becomes
     bool moved = false;                   ///< further than a click may tremble
+};
+
+/// Another blend beside the document's own; see comparison.h.
+struct Comparison {
+    std::string blend;           ///< its name
+    double divider = 0.5;        ///< where it begins, of the canvas's width
+    unsigned long version = 0;   ///< of the deformation that `now` is of; 0: of none
+    std::vector<glm::vec2> now;  ///< #vertices, image pixels
 };
 
 /// What the editor asks of its surroundings.
@@ -102,6 +111,7 @@ struct Editor {
     bool shown_by_brush = false;  ///< they go when the brush is put down
     bool iso_lines = false;
     float weights_opacity = 0.65f;
+    std::optional<Comparison> comparison;  ///< empty: the canvas shows one blend
 
     Brush brush;
     bool mirror = false;             ///< strokes are painted on both sides of the axis

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "editor/comparison.h"
 #include "editor/painting.h"
 #include "editor/tools.h"
 
@@ -46,6 +47,7 @@ void drag(Editor& editor, const PointerEvent& event) {
         gesture.moved = gesture.moved || wandered(editor);
         return;
     }
+    if (gesture.kind == Gesture::Kind::divider) return drag_divider(editor, event);
     if (is_brush_gesture(gesture.kind)) return drag_brush(editor, event);
     Probe* probe = find_probe(editor.document, gesture.probe);
     if (!probe) return;
@@ -61,6 +63,16 @@ void drag(Editor& editor, const PointerEvent& event) {
     }
 }
 
+/// Where the other blend is shown, what is pressed is not what the person sees: says so.
+bool only_compares(Editor& editor, const PointerEvent& event) {
+    if (!is_compared(editor, event.at)) return false;
+    editor.notice = "This side only compares: work on the picture at the left of the divider.";
+    return true;
+}
+
+/// The tools that look for the picture under the pointer.
+bool changes_picture(const Tool& tool) { return tool.name != "select" && tool.name != "zoom"; }
+
 }  // namespace
 
 void press(Editor& editor, const PointerEvent& event) {
@@ -68,7 +80,9 @@ void press(Editor& editor, const PointerEvent& event) {
     if (editor.gesture || !has_picture(editor)) return;
     if (event.button == Button::middle || (event.button == Button::left && event.space))
         begin(editor, Gesture::Kind::pan, event, {});
-    else if (event.button == Button::left)
+    else if (event.button == Button::left && is_on_divider(editor, event.at))
+        begin(editor, Gesture::Kind::divider, event, {}).start_divider = editor.comparison->divider;
+    else if (event.button == Button::left && !(changes_picture(*editor.tool) && only_compares(editor, event)))
         editor.tool->press(editor, event);
 }
 
@@ -92,13 +106,16 @@ void release(Editor& editor, const PointerEvent& event) {
         if (clicked && by_tool && editor.tool->click) editor.tool->click(editor, event);
         return;
     }
+    if (editor.gesture->kind == Gesture::Kind::divider) return editor.gesture.reset();
     if (is_brush_gesture(editor.gesture->kind)) return release_brush(editor);
     commit(editor, editor.gesture->label);
 }
 
 void double_click(Editor& editor, const PointerEvent& event) {
     if (event.button != Button::left || event.space || !has_picture(editor)) return;
-    if (editor.tool != &find_tool("select") || hit_test(editor, event.at).part != Part::none) return;
+    if (editor.tool != &find_tool("select") || hit_test(editor, event.at).part != Part::none ||
+        only_compares(editor, event))
+        return;
     if (const int id = put_probe(editor, event.at); id != 0)
         commit(editor, "Add " + find_probe(editor.document, id)->name);
 }

@@ -11,6 +11,7 @@ inline constexpr double least_zoom = 0.01, most_zoom = 64;
 struct CanvasView {
     glm::dvec2 corner{0};  ///< canvas pixels: where the image's top-left corner is
     double zoom = 1;       ///< canvas pixels per image pixel
+    friend bool operator==(const CanvasView&, const CanvasView&) = default;
 };
 
 glm::dvec2 to_canvas(const CanvasView& view, glm::dvec2 image_point);

@@ -23,7 +23,7 @@
 
 namespace probewarp {
 
-/// What the canvas texture was last drawn from: it is drawn anew only when something differs.
+/// What the canvas texture is drawn from: it is drawn anew only when something differs.
 struct Shown {
     PicturePtr picture;
     unsigned long mesh_version = 0, version = 0;
@@ -33,7 +33,9 @@ struct Shown {
     bool still = false;  ///< the picture stands still under a stroke
     bool bound = false;  ///< with its mesh, rather than as it is while that is being made
     OverlayKey overlay;
-    GLuint texture = 0;
+    std::string compared;  ///< the name of the blend at the right of the divider; empty: none
+    int divider = 0;       ///< canvas pixels
+    friend bool operator==(const Shown&, const Shown&) = default;
 };
 
 /// The dialog that asks how to export.
@@ -71,9 +73,10 @@ struct App {
     Theme theme = dark_theme();
     Fonts fonts;
     float scale = 1;
-    glm::dvec2 cursor{0};  ///< window pixels: at the last event
-    Shown shown;
-    PicturePtr uploaded;  ///< the picture that the renderer holds
+    glm::dvec2 cursor{0};      ///< window pixels: at the last event
+    Shown shown;               ///< as it was last drawn, or tried to be
+    GLuint shown_texture = 0;  ///< 0 before the first time
+    PicturePtr uploaded;       ///< the picture that the renderer holds
     double deform_milliseconds = 0;
     std::unique_ptr<BindingJob> binding_job;                  ///< null while none is under way
     std::vector<std::unique_ptr<BindingJob>> abandoned_jobs;  ///< given up, and not yet at their end

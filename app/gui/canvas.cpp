@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "editor/comparison.h"
 #include "editor/painting.h"
 #include "editor/tools.h"
 #include "gui/app.h"
@@ -14,70 +15,87 @@ namespace probewarp {
 
 namespace {
 
-bool same(const CanvasView& a, const CanvasView& b) { return a.corner == b.corner && a.zoom == b.zoom; }
+/// What the canvas should show now, at that size.
+Shown wanted(const App& app, glm::ivec2 size) {
+    const Editor& editor = app.editor;
+    Shown wanted;
+    wanted.picture = app.uploaded;
+    wanted.mesh_version = editor.deformation.mesh_version;
+    wanted.version = editor.deformation.version;
+    wanted.view = editor.view;
+    wanted.size = size;
+    wanted.mesh = editor.show_mesh;
+    wanted.light = app.theme.is_light;
+    wanted.still = shown_positions(editor).data() != editor.deformation.now.data();
+    // Another picture's mesh is no way to show this one: until its binding is there it is shown as it is.
+    wanted.bound = editor.deformation.binding && editor.deformation.source.picture == editor.document.picture;
+    if (wanted.bound) wanted.overlay = overlay_key(editor);
+    if (const auto x = divider(editor); x && wanted.bound) {
+        wanted.compared = editor.comparison->blend;
+        wanted.divider = int(*x);
+    }
+    return wanted;
+}
+
+/// Draws what `app.shown` says; `before` is what the renderer holds.
+void draw_shown(App& app, const Shown& before) {
+    Editor& editor = app.editor;
+    Renderer& renderer = *app.renderer;
+    const Shown& now = app.shown;
+    const bool new_mesh = before.mesh_version != now.mesh_version;
+    // Where two blends are compared the renderer holds the other one's positions.
+    const bool new_positions = before.bound != now.bound || new_mesh || before.version != now.version ||
+                               before.still != now.still || !before.compared.empty();
+    if (now.bound && new_mesh) renderer.set_mesh(mesh_of(editor.deformation));
+    if (!now.bound)
+        renderer.set_positions({}, false);
+    else if (new_positions)
+        renderer.set_positions(shown_positions(editor), editor.deformation.moved);
+    if (before.bound != now.bound || new_mesh || before.version != now.version ||
+        !(before.overlay == now.overlay))
+        renderer.set_overlay(overlay_vertices(editor, now.overlay), overlay_style(now.overlay));
+    View view;
+    view.scale = glm::dvec2(now.view.zoom);
+    view.origin = -now.view.corner / now.view.zoom;
+    view.width = now.size.x;
+    view.height = now.size.y;
+    const auto draw = [&] {
+        renderer.draw(view, 1, true);
+        app.shown_texture =
+            renderer.display(view, display_colours(app.theme), double(app.px(12)), now.bound && now.mesh);
+    };
+    draw();
+    if (now.compared.empty()) return;
+    renderer.set_positions(compared_positions(editor), editor.deformation.moved);
+    view.first_column = now.divider;
+    draw();
+}
 
 void update_texture(App& app, glm::ivec2 size) {
     update_deformation(app);
     if (app.jobs.exporting) return;  // the renderer is busy; the canvas keeps its last picture
     if (app.uploaded != app.editor.document.picture) return prepare_picture(app, app.editor.document.picture);
-    const Editor& editor = app.editor;
-    // Another picture's mesh is no way to show this one: until its binding is there it is shown as it is.
-    const bool bound =
-        editor.deformation.binding && editor.deformation.source.picture == editor.document.picture;
-    Shown& shown = app.shown;
-    const OverlayKey overlay = bound ? overlay_key(editor) : OverlayKey{};
-    const bool still = shown_positions(editor).data() != editor.deformation.now.data();
-    if (shown.picture == app.uploaded && shown.version == editor.deformation.version &&
-        shown.mesh_version == editor.deformation.mesh_version && same(shown.view, editor.view) &&
-        shown.size == size && shown.mesh == editor.show_mesh && shown.light == app.theme.is_light &&
-        shown.overlay == overlay && shown.still == still && shown.bound == bound)
-        return;
-    View view;
-    view.scale = glm::dvec2(editor.view.zoom);
-    view.origin = -editor.view.corner / editor.view.zoom;
-    view.width = size.x;
-    view.height = size.y;
-    const bool new_mesh = shown.mesh_version != editor.deformation.mesh_version;
-    const bool new_positions = shown.bound != bound || new_mesh ||
-                               shown.version != editor.deformation.version || shown.still != still;
-    const bool new_overlay = new_positions || !(shown.overlay == overlay);
+    Shown now = wanted(app, size);
+    if (app.shown == now) return;
     // Kept before the drawing: where it fails, it is tried again only when something has changed.
-    const GLuint texture = shown.texture;
-    shown = {app.uploaded,
-             editor.deformation.mesh_version,
-             editor.deformation.version,
-             editor.view,
-             size,
-             editor.show_mesh,
-             app.theme.is_light,
-             still,
-             bound,
-             overlay,
-             texture};
+    std::swap(app.shown, now);
     try {
-        if (bound && new_mesh) app.renderer->set_mesh(mesh_of(editor.deformation));
-        if (!bound)
-            app.renderer->set_positions({}, false);
-        else if (new_positions)
-            app.renderer->set_positions(shown_positions(editor), editor.deformation.moved);
-        if (new_overlay) app.renderer->set_overlay(overlay_vertices(editor, overlay), overlay_style(overlay));
-        app.renderer->draw(view, 1, true);
-        shown.texture = app.renderer->display(view, display_colours(app.theme), double(app.px(12)),
-                                              bound && editor.show_mesh);
+        draw_shown(app, now);
     } catch (const std::exception& error) {
         say(app, Tone::error, error.what());
     }
 }
 
 void look_under_pointer(App& app) {
-    const Editor& editor = app.editor;
+    Editor& editor = app.editor;
     app.under.reset();
     app.shares.clear();
     const bool shown =
         editor.deformation.binding && editor.deformation.source.picture == editor.document.picture;
     if (!editor.pointer || !shown) return;
-    app.under =
-        locate(mesh_of(editor.deformation), shown_positions(editor), to_image(editor.view, *editor.pointer));
+    const auto positions =
+        is_compared(editor, *editor.pointer) ? compared_positions(editor) : shown_positions(editor);
+    app.under = locate(mesh_of(editor.deformation), positions, to_image(editor.view, *editor.pointer));
     if (app.under) app.shares = shares_at(editor.deformation, *app.under);
 }
 
@@ -200,6 +218,37 @@ void draw_brush(const App& app, const ProbePainter& painter) {
                    fmt::format("{:.0f} px", editor.brush.radius), bright, 0.88f, app.px(6));
 }
 
+/// The name of a blend at the top of the canvas, ending at the divider or beginning there.
+void draw_blend_name(const App& app, ImDrawList* list, float x, float top, std::string_view blend,
+                     bool ends) {
+    const std::string text(find_blend_method(blend)->label);
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    const float left = ends ? x - width - app.px(36) : x + app.px(24);  // a label has a margin of its own
+    draw_label(app, list, {std::round(left), top + app.px(12)}, text, bright, 0.75f, app.px(6));
+}
+
+/// The line between two blends, a grip to take hold of it, and their names.
+void draw_divider(const App& app, const ProbePainter& painter, float height) {
+    const Editor& editor = app.editor;
+    const auto at = divider(editor);
+    if (!at || app.shown.compared.empty()) return;
+    const float x = painter.corner.x + float(*at), top = painter.corner.y;
+    const ImU32 dark = IM_COL32(0x0d, 0x0f, 0x12, 160);
+    ImDrawList* list = painter.list;
+    list->AddLine({x, top}, {x, top + height}, dark, app.px(4));
+    list->AddLine({x, top}, {x, top + height}, IM_COL32_WHITE, app.px(1.5));
+    const ImVec2 middle{x, top + std::round(height / 2)};
+    list->AddCircleFilled(middle, app.px(13), dark, 32);
+    list->AddCircleFilled(middle, app.px(11), IM_COL32_WHITE, 32);
+    for (const float side : {-1.0f, 1.0f}) {
+        const float tip = x + side * app.px(7.5), base = x + side * app.px(3);
+        list->AddTriangleFilled({tip, middle.y}, {base, middle.y - app.px(4)}, {base, middle.y + app.px(4)},
+                                IM_COL32(0x20, 0x24, 0x2a, 255));
+    }
+    draw_blend_name(app, list, x, top, editor.document.blend, true);
+    draw_blend_name(app, list, x, top, app.shown.compared, false);
+}
+
 void draw_hint(const App& app, ImDrawList* list, float left, float bottom, float width) {
     const std::string text(app.editor.tool->hint);
     ImGui::PushFont(app.fonts.small);
@@ -213,6 +262,9 @@ void draw_hint(const App& app, ImDrawList* list, float left, float bottom, float
 void choose_cursor(const Editor& editor) {
     if (editor.gesture && editor.gesture->kind == Gesture::Kind::pan)
         return ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+    const bool drags_divider = editor.gesture && editor.gesture->kind == Gesture::Kind::divider;
+    if (drags_divider || (!editor.gesture && editor.pointer && is_on_divider(editor, *editor.pointer)))
+        return ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     if (is_painting_tool(editor)) return ImGui::SetMouseCursor(ImGuiMouseCursor_None);
     if (editor.hover.part == Part::disc) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
     if (editor.hover.part == Part::knob || editor.hover.part == Part::reach)
@@ -243,11 +295,12 @@ void draw_canvas(App& app, float left, float top, float width, float height) {
     update_texture(app, {int(width), int(height)});
     look_under_pointer(app);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    if (app.shown.texture != 0 && app.shown.picture == editor.document.picture)
-        list->AddImage(reinterpret_cast<ImTextureID>(std::uintptr_t(app.shown.texture)), {left, top},
+    if (app.shown_texture != 0 && app.shown.picture == editor.document.picture)
+        list->AddImage(reinterpret_cast<ImTextureID>(std::uintptr_t(app.shown_texture)), {left, top},
                        {left + width, top + height});
     const ProbePainter painter{app, list, {left, top}};
     list->PushClipRect({left, top}, {left + width, top + height}, true);
+    draw_divider(app, painter, height);
     if (editor.show_probes) {
         for (const Probe& probe : editor.document.probes)
             if (probe.visible && probe.id != editor.selected) painter.draw(probe);

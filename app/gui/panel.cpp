@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "editor/commands.h"
+#include "editor/comparison.h"
 #include "editor/painting.h"
 #include "gui/app.h"
 #include "gui/brush_panel.h"
@@ -200,11 +201,29 @@ void method_combo(App& app, const char* label, std::string& name, const Rows& ro
                 name = std::string(row.name);
                 edit_at_once(app, step);
             }
-            if constexpr (requires { row.when; }) tooltip(std::string(row.when).c_str());
+            list_tooltip(app, std::string(row.when));
         }
         ImGui::EndCombo();
     }
     ImGui::PopID();
+}
+
+/// The blend beside the document's own: a way of looking, no step.
+void comparison_combo(App& app) {
+    row_label(app, "Beside", 68);
+    const std::string chosen = app.editor.comparison ? app.editor.comparison->blend : std::string();
+    const auto label = [](const BlendMethod* blend) { return std::string(blend ? blend->label : "Nothing"); };
+    const float width = ImGui::GetContentRegionAvail().x;
+    if (begin_combo(app, "##beside", label(find_blend_method(chosen)).c_str(), width)) {
+        if (ImGui::Selectable("Nothing", chosen.empty())) compare_with(app.editor, "");
+        for (const BlendMethod& blend : blend_methods()) {
+            if (ImGui::Selectable(label(&blend).c_str(), blend.name == chosen))
+                compare_with(app.editor, blend.name);
+            list_tooltip(app, std::string(blend.when));
+        }
+        ImGui::EndCombo();
+    }
+    tooltip("Another blend of the same pose, at the right of a divider that one drags");
 }
 
 /// Takes the mesh's settings unless it would need more weights than fit; says so then.
@@ -254,6 +273,7 @@ void draw_deformation(App& app) {
     begin_section_gap(app);
     if (!section(app, "deformation", "Deformation", app.deformation_open)) return;
     method_combo(app, "Blend", app.editor.document.blend, blend_methods(), "Blend");
+    comparison_combo(app);
     method_combo(app, "Weights", app.editor.document.weights.scheme, weight_schemes(), "Weights");
     mesh_slider(app);
     if (!app.editor.deformation.binding) return;

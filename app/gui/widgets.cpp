@@ -22,6 +22,19 @@ void tooltip(const char* text) {
     ImGui::PopStyleVar();
 }
 
+void list_tooltip(const App& app, const std::string& text) {
+    if (!ImGui::IsItemHovered() || text.empty()) return;
+    ImGui::SetNextWindowPos({ImGui::GetWindowPos().x - app.px(8), ImGui::GetItemRectMin().y},
+                            ImGuiCond_Always, {1, 0});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {app.px(10), app.px(6)});
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(app.px(280));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+    ImGui::PopStyleVar();
+}
+
 bool icon_button(App& app, const char* id, const char* symbol, const char* tip, bool on,
                  const std::string& why_not) {
     const float side = app.px(26);
@@ -149,7 +162,8 @@ bool begin_combo(App& app, const char* id, const char* shown, float width) {
     draw_icon(app.fonts.icons_small, {at.x + width - app.px(14), at.y + ImGui::GetFrameHeight() / 2},
               app.theme.muted, icon::down);
     list->ChannelsSetCurrent(0);
-    const bool open = ImGui::BeginCombo(id, shown, ImGuiComboFlags_NoArrowButton);
+    const bool open =
+        ImGui::BeginCombo(id, shown, ImGuiComboFlags_NoArrowButton | ImGuiComboFlags_HeightLarge);
     list->ChannelsMerge();
     ImGui::PopStyleColor(2);
     return open;

@@ -40,13 +40,16 @@ std::vector<VertexRun> changed_runs(const Document& before, const Document& afte
     return runs;
 }
 
-/// Moves one run of vertices; returns how many of its weights cancel.
+Pose pose_of(const Deformation& d, const Document& document) {
+    return {d.motions, d.transformations, glm::vec2(centre(document.picture->image))};
+}
+
+/// Moves one run of vertices; returns for how many the blend has no answer.
 std::size_t deform_run(Deformation& d, const Document& document, VertexRun run) {
     const std::size_t probes = document.probes.size();
     return find_blend_method(document.blend)
         ->deform(std::span(mesh_of(d).rest).subspan(run.first, run.count),
-                 weights_of(d).subspan(run.first * probes, run.count * probes),
-                 {d.motions, d.transformations, glm::vec2(centre(document.picture->image))},
+                 weights_of(d).subspan(run.first * probes, run.count * probes), pose_of(d, document),
                  std::span(d.now).subspan(run.first, run.count));
 }
 
@@ -109,6 +112,13 @@ void update(Deformation& deformation, const Document& document) {
     auto binding = deformation.binding;
     if (!is_bound(binding.get(), document)) binding = make_binding(document, binding);
     pose(deformation, document, std::move(binding));
+}
+
+std::vector<glm::vec2> positions_by(const Deformation& deformation, const BlendMethod& blend) {
+    std::vector<glm::vec2> positions(mesh_of(deformation).rest.size());
+    blend.deform(mesh_of(deformation).rest, weights_of(deformation), pose_of(deformation, deformation.source),
+                 positions);
+    return positions;
 }
 
 std::vector<double> shares_at(const Deformation& deformation, const MeshPoint& at) {

@@ -39,6 +39,9 @@ void update(Deformation& deformation, const Document& document);
 /// document.
 void pose(Deformation& deformation, const Document& document, std::shared_ptr<const Binding> binding);
 
+/// Where another blend takes the vertices in the same pose: #vertices, image pixels.
+std::vector<glm::vec2> positions_by(const Deformation& deformation, const BlendMethod& blend);
+
 struct PicturePose {
     glm::dvec2 rest;  ///< image pixels on the undeformed picture
     double angle;     ///< radians: how far the picture is turned there

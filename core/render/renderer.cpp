@@ -23,10 +23,16 @@ void set(const GlProgram& program, const char* name, float v) { glUniform1f(unif
 void set(const GlProgram& program, const char* name, int v) { glUniform1i(uniform(program, name), v); }
 
 /// The window's toolkit shares the context: what we rely on is set anew each time.
-void begin(const Target& target) {
+/// Left of `first_column` the target stays as it is.
+void begin(const Target& target, int first_column = 0) {
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.name());
     glViewport(0, 0, target.width, target.height);
-    glDisable(GL_SCISSOR_TEST);
+    if (first_column > 0) {
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(first_column, 0, std::max(0, target.width - first_column), target.height);
+    } else {
+        glDisable(GL_SCISSOR_TEST);
+    }
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
@@ -188,7 +194,7 @@ void Renderer::draw(const View& view, int samples, bool with_overlay) {
     with_overlay = with_overlay && overlay_style_;
     // Float, because the sums of weighted colours must give every byte of a file back.
     resize(layer_, view.width * samples, view.height * samples, GL_RGBA32F);
-    begin(layer_);
+    begin(layer_, view.first_column * samples);
     const GLfloat nothing[4]{};
     glClearBufferfv(GL_COLOR, 0, nothing);
     use_mesh_program(view, samples, with_overlay);
@@ -242,7 +248,7 @@ void Renderer::read_back(Image& image, int left, int top, const View& view, int 
 
 GLuint Renderer::display(const View& view, const DisplayColours& colours, double square, bool lines) {
     resize(shown_, view.width, view.height, GL_RGBA8);
-    begin(shown_);
+    begin(shown_, view.first_column);
     glUseProgram(display_program_.name());
     const glm::dvec2 corner = -view.origin * view.scale;
     const glm::dvec2 opposite = corner + glm::dvec2(picture_.width, picture_.height) * view.scale;
@@ -257,6 +263,7 @@ GLuint Renderer::display(const View& view, const DisplayColours& colours, double
     glDrawArrays(GL_TRIANGLES, 0, 3);
     if (lines) draw_lines(view, colours.lines);
     check_gl("showing the picture");
+    glDisable(GL_SCISSOR_TEST);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return shown_.texture.name();
 }

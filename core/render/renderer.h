@@ -26,6 +26,7 @@ struct View {
     glm::dvec2 scale{1};   ///< target pixels per image pixel, > 0
     int width = 0;         ///< of the target, pixels
     int height = 0;
+    int first_column = 0;  ///< of the target: what is left of it stays as it was
 };
 
 /// Fills the window itself with one colour, before its toolkit draws into it.
