@@ -10,8 +10,6 @@ namespace probewarp {
 
 namespace {
 
-constexpr std::size_t texels_a_tile = std::size_t{paint_tile_side} * paint_tile_side;
-
 std::vector<float>& tile_of(std::vector<std::vector<float>>& tiles, const PaintMap& map, std::size_t tile,
                             float otherwise) {
     if (tiles.empty()) tiles.resize(map.tiles.size());

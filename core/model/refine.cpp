@@ -41,7 +41,7 @@ void add_runs(const Mesh& mesh, glm::dvec2 least, glm::dvec2 most, std::vector<V
 void add_differences(const PaintMap* before, const PaintMap* after, const PictureFrame& frame,
                      const Mesh& mesh, std::vector<VertexRun>& runs) {
     const PaintMap& map = after ? *after : *before;
-    const std::size_t across = std::size_t((map.width + paint_tile_side - 1) / paint_tile_side);
+    const std::size_t across = std::size_t(tiles_along(map.width));
     for (std::size_t i = 0; i < map.tiles.size(); ++i) {
         if ((before ? before->tiles[i] : nullptr) == (after ? after->tiles[i] : nullptr)) continue;
         const glm::dvec2 corner = double(paint_tile_side) * glm::dvec2(i % across, i / across);

@@ -16,14 +16,7 @@ using testing::whole;
 
 constexpr glm::dvec2 extent{1, 0.75};
 
-PaintMap map_of(int width, int height) {
-    PaintMap map;
-    map.width = width;
-    map.height = height;
-    map.extent = extent;
-    map.tiles.resize(std::size_t((width + 63) / 64) * std::size_t((height + 63) / 64));
-    return map;
-}
+PaintMap map_of(int width, int height) { return empty_paint_map(width, height, extent); }
 
 std::vector<std::byte> png_of(int width, int height, std::vector<std::uint8_t> rgba) {
     Image image;

@@ -20,12 +20,7 @@ using testing::whole;
 
 /// Over a picture of that size, a texel a pixel.
 PaintMap map_of(int width, int height) {
-    PaintMap map;
-    map.width = width;
-    map.height = height;
-    map.extent = glm::dvec2(width, height) / double(std::max(width, height));
-    map.tiles.resize(std::size_t((width + 63) / 64) * std::size_t((height + 63) / 64));
-    return map;
+    return empty_paint_map(width, height, glm::dvec2(width, height) / double(std::max(width, height)));
 }
 
 PictureFrame frame_over(const PaintMap& map) {
