@@ -9,11 +9,6 @@ namespace probewarp {
 
 namespace {
 
-bool any_paint(const Document& document) {
-    return std::any_of(document.probes.begin(), document.probes.end(),
-                       [](const Probe& probe) { return probe.paint != nullptr; });
-}
-
 std::size_t chosen_place(const Editor& editor) {
     return std::size_t(find_probe(editor.document, editor.selected) - editor.document.probes.data());
 }
@@ -93,7 +88,7 @@ std::string_view needs_own_paint(const Editor& editor) {
     return why_not.empty() ? needs_paint(editor) : why_not;
 }
 std::string_view needs_any_paint(const Editor& editor) {
-    return any_paint(editor.document) ? "" : "Nothing is painted";
+    return is_painted(editor.document) ? "" : "Nothing is painted";
 }
 std::string_view needs_copied_paint(const Editor& editor) {
     return editor.copied_paint ? needs_paintable(editor) : "Copy a probe's paint first";

@@ -40,6 +40,11 @@ Probe new_probe(const Document& document, glm::dvec2 rest) {
     return probe;
 }
 
+bool is_painted(const Document& document) {
+    return std::any_of(document.probes.begin(), document.probes.end(),
+                       [](const Probe& probe) { return probe.paint != nullptr; });
+}
+
 void replace_picture(Document& document, PicturePtr picture) {
     if (document.picture) {
         const Image &from = document.picture->image, &to = picture->image;

@@ -37,6 +37,9 @@ const Probe* find_probe(const Document& document, int id);
 /// A probe at `rest` with a fresh id, the next colour, and a reach of an eighth of the picture's longer side.
 Probe new_probe(const Document& document, glm::dvec2 rest);
 
+/// Whether any probe has paint.
+bool is_painted(const Document& document);
+
 /// Puts another picture under the probes. Where its size differs, they keep their places relative to its
 /// centre and its longer side.
 void replace_picture(Document& document, PicturePtr picture);

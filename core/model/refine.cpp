@@ -8,11 +8,13 @@
 
 namespace probewarp {
 
-bool is_refined(const Document& document) {
+bool is_limited(const Document& document) {
     const std::size_t most = std::size_t(document.weights.most);
-    return document.stiffness || (most > 0 && most < document.probes.size()) ||
-           std::any_of(document.probes.begin(), document.probes.end(),
-                       [](const Probe& probe) { return probe.paint != nullptr; });
+    return most > 0 && most < document.probes.size();
+}
+
+bool is_refined(const Document& document) {
+    return document.stiffness || is_limited(document) || is_painted(document);
 }
 
 namespace {
@@ -120,11 +122,8 @@ void settle_run(const Document& document, const Binding& binding, VertexRun run,
     const PictureFrame frame = frame_of(document.picture->image);
     std::vector<Paint> paint(probes);
     std::vector<std::uint8_t> locked(probes);
-    bool painted = false;
-    for (std::size_t i = 0; i < probes; ++i) {
-        locked[i] = document.probes[i].locked;
-        painted = painted || document.probes[i].paint;
-    }
+    for (std::size_t i = 0; i < probes; ++i) locked[i] = document.probes[i].locked;
+    const bool painted = is_painted(document);
     const std::vector<bool> anchored = painted ? anchored_vertices(*binding.mesh) : std::vector<bool>();
     for (std::size_t k = 0; k < run.count; ++k) {
         const auto automatic = std::span(binding.automatic).subspan((run.first + k) * probes, probes);
@@ -142,7 +141,7 @@ void settle_run(const Document& document, const Binding& binding, VertexRun run,
         if (anchored[run.first + k]) open_anchor(binding, anchored, run.first + k, covered, row);
         settle(row, paint, locked, row);
     }
-    if (document.weights.most > 0 && !document.stiffness)
+    if (is_limited(document) && !document.stiffness)
         keep_heaviest(std::size_t(document.weights.most), probes, weights);
 }
 
@@ -249,7 +248,7 @@ std::vector<float> refined_weights(const Document& document, const Binding& bind
         const auto stiffness =
             stiffness_at(*document.stiffness, frame_of(document.picture->image), binding.mesh->rest);
         stiffen(*binding.mesh, stiffness, probes, weights);
-        if (document.weights.most > 0) keep_heaviest(std::size_t(document.weights.most), probes, weights);
+        if (is_limited(document)) keep_heaviest(std::size_t(document.weights.most), probes, weights);
     }
     return weights;
 }

@@ -37,12 +37,6 @@ std::vector<std::uint32_t> nearest_kept_cells(const Mesh& mesh) {
     return nearest;
 }
 
-/// Whether the vertices' weights are not the paint's and the automatic ones alone.
-bool is_interpolated(const Document& document) {
-    const int most = document.weights.most;
-    return document.stiffness || (most > 0 && std::size_t(most) < document.probes.size());
-}
-
 }  // namespace
 
 ShareLookup::ShareLookup(const Deformation& deformation)
@@ -51,7 +45,8 @@ ShareLookup::ShareLookup(const Deformation& deformation)
       frame_(frame_of(deformation.source.picture->image)) {
     const Document& document = deformation.source;
     const std::size_t probes = document.probes.size();
-    const bool interpolated = is_interpolated(document);
+    // Whether the vertices' weights are not the paint's and the automatic ones alone.
+    const bool interpolated = document.stiffness || is_limited(document);
     weights_ = interpolated ? weights_of(deformation) : std::span(deformation.binding->automatic);
     if (probes > 0)
         for (std::size_t row = 0; row < weights_.size(); row += probes) {
