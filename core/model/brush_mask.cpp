@@ -253,13 +253,6 @@ std::optional<glm::dvec2> rest_at_centre(const Ground& ground, std::span<const s
     return topmost;
 }
 
-/// Whether the mesh has the cell at (column, row).
-bool has_cell(const Mesh& mesh, int column, int row) {
-    if (column < 0 || row < 0 || column >= mesh.columns || row >= mesh.rows) return false;
-    const std::size_t cell = std::size_t(row) * std::size_t(mesh.columns) + std::size_t(column);
-    return mesh.first_triangle[cell] < mesh.first_triangle[cell + 1];
-}
-
 bool is_outermost(const Mesh& mesh, int column, int row) {
     for (int y = row - 1; y <= row + 1; ++y)
         for (int x = column - 1; x <= column + 1; ++x)

@@ -26,7 +26,7 @@ std::vector<std::uint32_t> nearest_kept_cells(const Mesh& mesh) {
         front.push_back(cell);
     };
     for (std::uint32_t cell = 0; cell < cells; ++cell)
-        if (mesh.first_triangle[cell] != mesh.first_triangle[cell + 1]) reach(cell, cell);
+        if (has_cell(mesh, cell)) reach(cell, cell);
     for (; !front.empty(); front.pop_front()) {
         const std::uint32_t cell = front.front(), from = nearest[cell];
         if (cell >= columns) reach(cell - columns, from);
