@@ -1,8 +1,11 @@
 #include "io/paint_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 #include <variant>
 
 #include "io/formats.h"
@@ -94,6 +97,23 @@ std::size_t painted_texels(const PaintMap& map) {
     for (const auto& tile : map.tiles)
         if (tile) tiles.insert(tile.get());
     return tiles.size() * texels_a_tile;
+}
+
+void PaintBudget::check() const {
+    constexpr std::size_t most_texels = std::size_t{1} << 28, most_painted = std::size_t{1} << 27;
+    for (const auto& [taken, most] : {std::pair{texels, most_texels}, {painted, most_painted}})
+        if (taken > most)
+            throw Error(fmt::format("the paint takes {} million texels; expected at most {} million",
+                                    taken / 1000000, most / 1000000));
+}
+
+PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent, PaintBudget& budget) {
+    budget.texels += paint_texels(bytes);
+    budget.check();  // before anything is allocated
+    PaintMap map = decode_paint(bytes, extent);
+    budget.painted += painted_texels(map);
+    budget.check();
+    return map;
 }
 
 }  // namespace probewarp
