@@ -6,6 +6,7 @@
 #include "editor/painting.h"
 #include "editor/tools.h"
 #include "model/paint_ops.h"
+#include "model/sum_of.h"
 
 namespace probewarp {
 
@@ -54,11 +55,8 @@ std::vector<float> shares_of(const Deformation& deformation, std::size_t probe) 
     const auto weights = weights_of(deformation);
     std::vector<float> shares;
     shares.reserve(deformation.now.size());
-    for (std::size_t start = 0; start < weights.size(); start += probes) {
-        float total = 0;
-        for (std::size_t i = 0; i < probes; ++i) total += weights[start + i];
-        shares.push_back(weights[start + probe] / total);
-    }
+    for (std::size_t start = 0; start < weights.size(); start += probes)
+        shares.push_back(weights[start + probe] / float(sum_of(weights.subspan(start, probes))));
     return shares;
 }
 

@@ -3,6 +3,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "model/sum_of.h"
+
 namespace probewarp {
 
 PaintMap empty_paint_map(int width, int height, glm::dvec2 extent) {
@@ -119,9 +121,7 @@ void settle(std::span<const float> automatic, std::span<const Paint> paint,
             std::span<const std::uint8_t> locked, std::span<float> settled) {
     assert(paint.size() == automatic.size() && locked.size() == automatic.size() &&
            settled.size() == automatic.size());
-    double total = 0;
-    for (const float a : automatic) total += a;
-    const double each = 1 / total;
+    const double each = 1 / sum_of(automatic);
     const auto painted = [&](std::size_t i) { return double(paint[i].coverage) * paint[i].value; };
     const auto following = [&](std::size_t i) {
         return (1 - double(paint[i].coverage)) * (automatic[i] * each);

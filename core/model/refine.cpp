@@ -6,6 +6,8 @@
 #include <cmath>
 #include <deque>
 
+#include "model/sum_of.h"
+
 namespace probewarp {
 
 bool is_limited(const Document& document) {
@@ -97,22 +99,17 @@ std::vector<bool> anchored_vertices(const Mesh& mesh) {
 
 void open_anchor(const Binding& binding, const std::vector<bool>& anchored, std::size_t vertex, float covered,
                  std::span<float> row) {
-    const auto divide_by_sum = [](std::span<float> weights, float part) {
-        float total = 0;
-        for (const float w : weights) total += w;
-        for (float& w : weights) w *= part / total;
-    };
     // The cell's corners are all of its vertices that may be nobody's own.
     std::array<std::uint32_t, 4> corners{};
     std::size_t count = 0;
     for (const std::uint32_t v : grid_corners(*binding.mesh, binding.mesh->rest[vertex]))
         if (v != no_vertex && !anchored[v]) corners[count++] = v;
-    divide_by_sum(row, count > 0 ? 1 - covered : 1);
+    const float own = (count > 0 ? 1 - covered : 1) / float(sum_of(row));
+    for (float& w : row) w *= own;
     for (std::size_t k = 0; k < count; ++k) {
         const auto corner = std::span(binding.automatic).subspan(corners[k] * row.size(), row.size());
-        float total = 0;
-        for (const float w : corner) total += w;
-        for (std::size_t i = 0; i < row.size(); ++i) row[i] += covered * corner[i] / (total * float(count));
+        const float total = float(sum_of(corner)) * float(count);
+        for (std::size_t i = 0; i < row.size(); ++i) row[i] += covered * corner[i] / total;
     }
 }
 
@@ -216,15 +213,10 @@ void stiffen(const Mesh& mesh, std::span<const float> stiffness, std::size_t pro
     const int regions = stiff_regions(Neighbours(mesh), stiffness, region);
     if (regions == 0) return;
     std::vector<double> mean(std::size_t(regions) * probes), mass(std::size_t(regions), 0.0);
-    const auto total = [](std::span<const float> row) {
-        double sum = 0;
-        for (const float w : row) sum += double(w);
-        return sum;
-    };
     for (std::size_t v = 0; v < region.size(); ++v) {
         if (region[v] < 0) continue;
         const auto row = weights.subspan(v * probes, probes);
-        const double part = double(stiffness[v]) / total(row);
+        const double part = double(stiffness[v]) / sum_of(row);
         const std::size_t r = std::size_t(region[v]);
         for (std::size_t i = 0; i < probes; ++i) mean[r * probes + i] += part * double(row[i]);
         mass[r] += double(stiffness[v]);
@@ -232,7 +224,7 @@ void stiffen(const Mesh& mesh, std::span<const float> stiffness, std::size_t pro
     for (std::size_t v = 0; v < region.size(); ++v) {
         if (region[v] < 0) continue;
         const auto row = weights.subspan(v * probes, probes);
-        const double s = double(stiffness[v]), own = (1 - s) / total(row);
+        const double s = double(stiffness[v]), own = (1 - s) / sum_of(row);
         const std::size_t r = std::size_t(region[v]);
         for (std::size_t i = 0; i < probes; ++i)
             row[i] = float(own * double(row[i]) + s * mean[r * probes + i] / mass[r]);

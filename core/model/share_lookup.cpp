@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "model/refine.h"
+#include "model/sum_of.h"
 
 namespace probewarp {
 
@@ -49,11 +50,8 @@ ShareLookup::ShareLookup(const Deformation& deformation)
     const bool interpolated = document.stiffness || is_limited(document);
     weights_ = interpolated ? weights_of(deformation) : std::span(deformation.binding->automatic);
     if (probes > 0)
-        for (std::size_t row = 0; row < weights_.size(); row += probes) {
-            double sum = 0;
-            for (const float w : weights_.subspan(row, probes)) sum += double(w);
-            to_share_.push_back(float(1 / sum));
-        }
+        for (std::size_t row = 0; row < weights_.size(); row += probes)
+            to_share_.push_back(float(1 / sum_of(weights_.subspan(row, probes))));
     for (std::size_t i = 0; i < probes; ++i) {
         locked_.push_back(document.probes[i].locked);
         if (interpolated || !document.probes[i].paint) continue;
