@@ -61,16 +61,11 @@ std::vector<float> shares_of(const Deformation& deformation, std::size_t probe) 
 }
 
 PaintStroke::Layer layer_of(Editor& editor, int probe) {
-    const Image& image = editor.document.picture->image;
     PaintStroke::Layer layer;
     layer.probe = probe;
-    const PaintPtr& paint = paint_of_layer(editor.document, probe);
-    layer.map = paint ? *paint : new_paint_map(image.width, image.height);
+    layer.map = map_of(editor.document, paint_of_layer(editor.document, probe));
     layer.stroke = {layer.map, {}, {}};
-    if (probe != 0) {
-        const auto place = find_probe(editor.document, probe) - editor.document.probes.data();
-        layer.shares = shares_of(editor.deformation, std::size_t(place));
-    }
+    if (probe != 0) layer.shares = shares_of(editor.deformation, place_of(editor.document, probe));
     return layer;
 }
 
@@ -143,7 +138,7 @@ void begin_stroke(Editor& editor, const PointerEvent& event) {
     stroke->last = to_image(editor.view, event.at);
     if (editor.shown_weights != ShownWeights::none) stroke->still = editor.deformation.now;
     if (editor.mirror && !stiff) {
-        const auto place = std::size_t(find_probe(editor.document, probe) - editor.document.probes.data());
+        const std::size_t place = place_of(editor.document, probe);
         const std::size_t other = counterpart(editor.document, place, mirror_axis(editor));
         if (other != place && !editor.document.probes[other].locked)
             stroke->mirrored = layer_of(editor, editor.document.probes[other].id);

@@ -79,10 +79,7 @@ struct MaskPart {
     const Mask& mask;
     const TileRect& rect;
 
-    float operator()(int x, int y) const {
-        return mask
-            .strength[std::size_t(y - mask.top) * std::size_t(mask.width) + std::size_t(x - mask.left)];
-    }
+    float operator()(int x, int y) const { return mask.strength[mask.at(x, y)]; }
     bool empty() const {
         for (int y = rect.top; y < rect.bottom; ++y)
             for (int x = rect.left; x < rect.right; ++x)

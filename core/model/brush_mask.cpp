@@ -326,10 +326,7 @@ class MaskPainter {
     Range columns() const { return {mask.left, mask.left + mask.width}; }
     Range rows() const { return {mask.top, mask.top + mask.height}; }
 
-    float& strength_at(int column, int row) {
-        return mask.strength[std::size_t(row - mask.top) * std::size_t(mask.width) +
-                             std::size_t(column - mask.left)];
-    }
+    float& strength_at(int column, int row) { return mask.strength[mask.at(column, row)]; }
 
     Corners in_texels(Corners rest) const {
         for (glm::dvec2& p : rest) p = (p - origin) / texel;
