@@ -58,6 +58,27 @@ TEST(PaintFile, TilesAllTheSameAreOne) {
     EXPECT_EQ(painted_texels(map_of(200, 200)), 0u);
 }
 
+TEST(PaintFile, TakesNoMoreThanIsLeftOfTheBudget) {
+    PaintMap map = map_of(128, 64);
+    edit_texels(map, 0, 0, 128, 64, [](int, int, Paint) { return Paint{0.5f, 1}; });
+    const std::vector<std::byte> png = encode_paint(map);
+    constexpr std::size_t texels = 128 * 64, painted = 64 * 64;  // its two tiles are one
+    PaintBudget budget;
+    EXPECT_TRUE(same_paint(decode_paint(png, extent, budget), map));
+    EXPECT_EQ(budget.texels, texels);
+    EXPECT_EQ(budget.painted, painted);
+    constexpr std::size_t most_texels = std::size_t{1} << 28, most_painted = std::size_t{1} << 27;
+    const auto refusal = [&](std::size_t texels_before, std::size_t painted_before) {
+        PaintBudget taken{texels_before, painted_before};
+        return error_of([&] { decode_paint(png, extent, taken); });
+    };
+    EXPECT_EQ(refusal(most_texels - texels, most_painted - painted), "");
+    EXPECT_EQ(refusal(most_texels - texels + 1, 0),
+              "the paint takes 268 million texels; expected at most 268 million");
+    EXPECT_EQ(refusal(0, most_painted - painted + 1),
+              "the paint takes 134 million texels; expected at most 134 million");
+}
+
 TEST(PaintFile, GreyWithoutAlphaCoversEverything) {
     const std::vector<std::uint16_t> grey{0, 1, 256, 32767, 65534, 65535};
     const PaintMap map = decode_paint(encode_grey_png(3, 2, grey), extent);
