@@ -17,10 +17,6 @@ std::string_view needs_picture(const Editor& e) { return has_picture(e) ? "" : "
 std::string_view needs_probe(const Editor& e) {
     return find_probe(e.document, e.selected) ? "" : "Choose a probe first";
 }
-std::string_view needs_unlocked(const Editor& e) {
-    const Probe* probe = find_probe(e.document, e.selected);
-    return !probe ? "Choose a probe first" : probe->locked ? "The probe is locked" : "";
-}
 std::string_view needs_pose(const Editor& e) {
     const auto& probes = e.document.probes;
     if (std::all_of(probes.begin(), probes.end(), at_rest)) return "No probe has moved";
@@ -147,10 +143,10 @@ constexpr Command all[] = {
      [](Editor& e) { e.mirror = !e.mirror; },
      false,
      [](const Editor& e) { return e.mirror; }},
-    {"Weights", "Fill with the brush's value", {}, &needs_paintable, &fill_paint, true},
-    {"Weights", "Invert", {'I', true}, &needs_paintable, &invert_paint},
-    {"Weights", "Blur", {}, &needs_paintable, &blur_paint},
-    {"Weights", "Levels…", {}, &needs_paintable, &ask<Request::levels>},
+    {"Weights", "Fill with the brush's value", {}, &needs_unlocked, &fill_paint, true},
+    {"Weights", "Invert", {'I', true}, &needs_unlocked, &invert_paint},
+    {"Weights", "Blur", {}, &needs_unlocked, &blur_paint},
+    {"Weights", "Levels…", {}, &needs_unlocked, &ask<Request::levels>},
     {"Weights", "Copy paint", {'C', true}, &needs_paint, &copy_paint, true},
     {"Weights", "Paste paint", {'V', true}, &needs_copied_paint, &paste_paint},
     {"Weights", "Mirror left to right", {}, &needs_own_paint, &mirror_left_to_right},

@@ -9,21 +9,7 @@ namespace probewarp {
 
 namespace {
 
-bool any_paint(const Document& document) {
-    return std::any_of(document.probes.begin(), document.probes.end(),
-                       [](const Probe& probe) { return probe.paint != nullptr; });
-}
-
-std::size_t chosen_place(const Editor& editor) {
-    return std::size_t(find_probe(editor.document, editor.selected) - editor.document.probes.data());
-}
-
-/// The probe's map, or an empty one.
-PaintMap map_of(const Document& document, std::size_t probe) {
-    const Image& image = document.picture->image;
-    return document.probes[probe].paint ? *document.probes[probe].paint
-                                        : new_paint_map(image.width, image.height);
-}
+std::size_t chosen_place(const Editor& editor) { return place_of(editor.document, editor.selected); }
 
 /// Has the window work out a document beside itself. The deformation is copied: the window goes on with its
 /// own.
@@ -45,7 +31,7 @@ void reshape(Editor& editor, const char* what,
     add_task(editor, what + (" " + editor.document.probes[probe].name),
              [probe, operation = std::move(operation)](const Deformation& deformation) {
                  Document document = deformation.source;
-                 const PaintMap map = map_of(document, probe);
+                 const PaintMap map = map_of(document, document.probes[probe].paint);
                  document.probes[probe].paint =
                      std::make_shared<const PaintMap>(operation(map, share_raster(deformation, probe, map)));
                  return document;
@@ -66,7 +52,8 @@ void mirror_paint(Editor& editor, Side side) {
              [probe, other, axis, side](const Deformation& deformation) {
                  Document document = deformation.source;
                  const PictureFrame frame = frame_of(document.picture->image);
-                 const PaintMap own = map_of(document, probe), others = map_of(document, other);
+                 const PaintMap own = map_of(document, document.probes[probe].paint);
+                 const PaintMap others = map_of(document, document.probes[other].paint);
                  const auto mirror = [&](std::size_t onto, const PaintMap& old, const PaintMap& from) {
                      PaintMap map = mirrored_paint(old, from, frame, axis, side);
                      document.probes[onto].paint =
@@ -80,7 +67,7 @@ void mirror_paint(Editor& editor, Side side) {
 
 }  // namespace
 
-std::string_view needs_paintable(const Editor& editor) {
+std::string_view needs_unlocked(const Editor& editor) {
     const Probe* probe = find_probe(editor.document, editor.selected);
     return !probe ? "Choose a probe first" : probe->locked ? "The probe is locked" : "";
 }
@@ -89,21 +76,21 @@ std::string_view needs_paint(const Editor& editor) {
     return !probe ? "Choose a probe first" : !probe->paint ? "The probe has no paint" : "";
 }
 std::string_view needs_own_paint(const Editor& editor) {
-    const std::string_view why_not = needs_paintable(editor);
+    const std::string_view why_not = needs_unlocked(editor);
     return why_not.empty() ? needs_paint(editor) : why_not;
 }
 std::string_view needs_any_paint(const Editor& editor) {
-    return any_paint(editor.document) ? "" : "Nothing is painted";
+    return is_painted(editor.document) ? "" : "Nothing is painted";
 }
 std::string_view needs_copied_paint(const Editor& editor) {
-    return editor.copied_paint ? needs_paintable(editor) : "Copy a probe's paint first";
+    return editor.copied_paint ? needs_unlocked(editor) : "Copy a probe's paint first";
 }
 std::string_view needs_stiffness(const Editor& editor) {
     return editor.document.stiffness ? "" : "No stiffness is painted";
 }
 
 void fill_paint(Editor& editor) {
-    const PaintMap map = map_of(editor.document, chosen_place(editor));
+    const PaintMap map = map_of(editor.document, selected_probe(editor)->paint);
     set_paint(editor, std::make_shared<const PaintMap>(filled(map, float(editor.brush.value))), "Fill");
 }
 

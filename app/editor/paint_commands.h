@@ -5,8 +5,8 @@
 
 namespace probewarp {
 
-/// Why the chosen probe cannot be painted by a command; empty where it can.
-std::string_view needs_paintable(const Editor& editor);
+/// Why a command cannot change the chosen probe; empty where it can.
+std::string_view needs_unlocked(const Editor& editor);
 /// ... or has no paint to copy.
 std::string_view needs_paint(const Editor& editor);
 /// ... or has no paint that could be changed.

@@ -6,6 +6,7 @@
 #include "editor/painting.h"
 #include "editor/tools.h"
 #include "model/paint_ops.h"
+#include "model/sum_of.h"
 
 namespace probewarp {
 
@@ -54,25 +55,17 @@ std::vector<float> shares_of(const Deformation& deformation, std::size_t probe) 
     const auto weights = weights_of(deformation);
     std::vector<float> shares;
     shares.reserve(deformation.now.size());
-    for (std::size_t start = 0; start < weights.size(); start += probes) {
-        float total = 0;
-        for (std::size_t i = 0; i < probes; ++i) total += weights[start + i];
-        shares.push_back(weights[start + probe] / total);
-    }
+    for (std::size_t start = 0; start < weights.size(); start += probes)
+        shares.push_back(weights[start + probe] / float(sum_of(weights.subspan(start, probes))));
     return shares;
 }
 
 PaintStroke::Layer layer_of(Editor& editor, int probe) {
-    const Image& image = editor.document.picture->image;
     PaintStroke::Layer layer;
     layer.probe = probe;
-    const PaintPtr& paint = paint_of_layer(editor.document, probe);
-    layer.map = paint ? *paint : new_paint_map(image.width, image.height);
+    layer.map = map_of(editor.document, paint_of_layer(editor.document, probe));
     layer.stroke = {layer.map, {}, {}};
-    if (probe != 0) {
-        const auto place = find_probe(editor.document, probe) - editor.document.probes.data();
-        layer.shares = shares_of(editor.deformation, std::size_t(place));
-    }
+    if (probe != 0) layer.shares = shares_of(editor.deformation, place_of(editor.document, probe));
     return layer;
 }
 
@@ -145,7 +138,7 @@ void begin_stroke(Editor& editor, const PointerEvent& event) {
     stroke->last = to_image(editor.view, event.at);
     if (editor.shown_weights != ShownWeights::none) stroke->still = editor.deformation.now;
     if (editor.mirror && !stiff) {
-        const auto place = std::size_t(find_probe(editor.document, probe) - editor.document.probes.data());
+        const std::size_t place = place_of(editor.document, probe);
         const std::size_t other = counterpart(editor.document, place, mirror_axis(editor));
         if (other != place && !editor.document.probes[other].locked)
             stroke->mirrored = layer_of(editor, editor.document.probes[other].id);

@@ -1,8 +1,11 @@
 #include "io/paint_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 #include <variant>
 
 #include "io/formats.h"
@@ -15,16 +18,17 @@ std::vector<std::byte> encode_grey_png(int width, int height, std::span<const st
 
 std::vector<std::byte> encode_paint(const PaintMap& map) {
     const std::size_t width = std::size_t(map.width), height = std::size_t(map.height);
-    const std::size_t side = paint_tile_side, across = (width + side - 1) / side;
     std::vector<std::uint16_t> samples(width * height * 2);
-    for (std::size_t y = 0; y < height; ++y)
-        for (std::size_t x = 0; x < width; ++x) {
-            const PaintTile* tile = map.tiles[y / side * across + x / side].get();
-            if (!tile) continue;
-            const std::size_t at = y % side * side + x % side;
-            samples[(y * width + x) * 2] = tile->value[at];
-            samples[(y * width + x) * 2 + 1] = tile->coverage[at];
-        }
+    for_each_tile(map, 0, 0, map.width, map.height, [&](const TileRect& rect) {
+        const PaintTile* tile = map.tiles[rect.tile].get();
+        if (!tile) return;
+        for (int y = rect.top; y < rect.bottom; ++y)
+            for (int x = rect.left; x < rect.right; ++x) {
+                const std::size_t from = TileRect::at(x, y), to = std::size_t(y) * width + std::size_t(x);
+                samples[to * 2] = tile->value[from];
+                samples[to * 2 + 1] = tile->coverage[from];
+            }
+    });
     return encode_png_samples(map.width, map.height, 2, samples);
 }
 
@@ -58,39 +62,33 @@ std::size_t paint_texels(std::span<const std::byte> bytes) {
 PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent) {
     if (!find_image_format("png")->recognise(bytes)) throw Error("is no PNG; expected a 16-bit grey one");
     const Image image = decode_png(bytes);
-    PaintMap map;
-    map.width = image.width;
-    map.height = image.height;
-    map.extent = extent;
-    constexpr int side = paint_tile_side;
-    const int across = (map.width + side - 1) / side, down = (map.height + side - 1) / side;
+    PaintMap map = empty_paint_map(image.width, image.height, extent);
     std::map<Texel, std::shared_ptr<const PaintTile>> uniform;  // tiles of one value, each made once
-    const auto tile_at = [&](const auto& rgba, int left, int top) -> std::shared_ptr<const PaintTile> {
+    const auto tile_of = [&](const auto& rgba, const TileRect& rect) -> std::shared_ptr<const PaintTile> {
         auto tile = blank_tile();
-        const int right = std::min(left + side, map.width), bottom = std::min(top + side, map.height);
         const auto texel = [&](int x, int y) {
             return texel_of(rgba.data() + (std::size_t(y) * std::size_t(map.width) + std::size_t(x)) * 4);
         };
-        const Texel first = texel(left, top);
+        const Texel first = texel(rect.left, rect.top);
         bool same = true;
-        for (int y = top; y < bottom; ++y)
-            for (int x = left; x < right; ++x) {
+        for (int y = rect.top; y < rect.bottom; ++y)
+            for (int x = rect.left; x < rect.right; ++x) {
                 const Texel here = texel(x, y);
                 same = same && here == first;
-                tile->value[std::size_t((y - top) * side + x - left)] = here.value;
-                tile->coverage[std::size_t((y - top) * side + x - left)] = here.coverage;
+                tile->value[TileRect::at(x, y)] = here.value;
+                tile->coverage[TileRect::at(x, y)] = here.coverage;
             }
         if (!same) return tile;
         if (first.coverage == 0) return nullptr;
-        if (right - left < side || bottom - top < side) return tile;  // at the edge a tile is not full
+        const int area = (rect.right - rect.left) * (rect.bottom - rect.top);
+        if (std::size_t(area) < texels_a_tile) return tile;  // at the edge a tile is not full
         auto& shared = uniform[first];
         if (!shared) shared = tile;
         return shared;
     };
-    for (int y = 0; y < down; ++y)
-        for (int x = 0; x < across; ++x)
-            map.tiles.push_back(
-                std::visit([&](const auto& rgba) { return tile_at(rgba, x * side, y * side); }, image.rgba));
+    for_each_tile(map, 0, 0, map.width, map.height, [&](const TileRect& rect) {
+        map.tiles[rect.tile] = std::visit([&](const auto& rgba) { return tile_of(rgba, rect); }, image.rgba);
+    });
     return map;
 }
 
@@ -98,7 +96,24 @@ std::size_t painted_texels(const PaintMap& map) {
     std::set<const PaintTile*> tiles;
     for (const auto& tile : map.tiles)
         if (tile) tiles.insert(tile.get());
-    return tiles.size() * std::size_t{paint_tile_side} * paint_tile_side;
+    return tiles.size() * texels_a_tile;
+}
+
+void PaintBudget::check() const {
+    constexpr std::size_t most_texels = std::size_t{1} << 28, most_painted = std::size_t{1} << 27;
+    for (const auto& [taken, most] : {std::pair{texels, most_texels}, {painted, most_painted}})
+        if (taken > most)
+            throw Error(fmt::format("the paint takes {} million texels; expected at most {} million",
+                                    taken / 1000000, most / 1000000));
+}
+
+PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent, PaintBudget& budget) {
+    budget.texels += paint_texels(bytes);
+    budget.check();  // before anything is allocated
+    PaintMap map = decode_paint(bytes, extent);
+    budget.painted += painted_texels(map);
+    budget.check();
+    return map;
 }
 
 }  // namespace probewarp

@@ -23,6 +23,17 @@ std::size_t paint_texels(std::span<const std::byte> bytes);
 /// file name.
 PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent);
 
+/// What all paint of a project takes: limited, so that a small file cannot ask for all memory or time.
+struct PaintBudget {
+    std::size_t texels = 0;   ///< of the maps, at most 2^28
+    std::size_t painted = 0;  ///< as painted_texels counts them, at most 2^27: 512 MiB of tiles
+    /// Throws Error where either is more.
+    void check() const;
+};
+
+/// The same of a 16-bit PNG, counted in `budget`; throws Error where that does not suffice, too.
+PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent, PaintBudget& budget);
+
 /// A 16-bit grey PNG. grey: height x width, row-major
 std::vector<std::byte> encode_grey_png(int width, int height, std::span<const std::uint16_t> grey);
 

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -27,9 +25,7 @@ constexpr int max_json_depth = 8;
 constexpr std::size_t max_probes = 10000;
 constexpr std::size_t max_json_objects = 2 * max_probes + 8;  // a probe and its paint, the project a few
 constexpr std::size_t max_json_lists = 3 * max_probes + 8;    // rest, now and the paint's extent of each
-/// Of all paint together, so that a small file cannot ask for all memory or time: 512 MiB of tiles.
-constexpr std::size_t max_painted_texels = std::size_t{1} << 27, max_paint_texels = std::size_t{1} << 28;
-constexpr std::size_t max_json_fields = 64;  // of one object
+constexpr std::size_t max_json_fields = 64;                   // of one object
 
 std::vector<std::byte> to_bytes(std::string_view text) {
     const auto bytes = std::as_bytes(std::span(text));
@@ -214,11 +210,6 @@ std::string one_line(std::string text) {
     return text;
 }
 
-Error too_much_paint(std::size_t texels, std::size_t most) {
-    return Error(fmt::format("the paint takes {} million texels; expected at most {} million",
-                             texels / 1000000, most / 1000000));
-}
-
 /// The place of the picture's bytes in the archive: "image" with its format's usual ending.
 std::string image_member(const Picture& picture) {
     return fmt::format("image{}", find_image_format(picture.format)->extensions[0]);
@@ -297,47 +288,57 @@ Parsed parse_project(std::span<const std::byte> bytes) {
     return parsed;
 }
 
-Document decode(std::vector<std::byte> bytes) {
-    std::vector<ZipMember> members = read_zip(bytes, max_file_bytes);
-    bytes = {};  // the picture's pixels need the room
-    if (members.empty() || members[0].name != "mimetype" || members[0].bytes != to_bytes(project_mimetype))
-        throw Error("is not a Probewarp project; expected a ZIP archive whose first member is its mimetype");
-    const auto find = [&members](const std::string& name) {
-        const auto found =
-            std::find_if(members.begin(), members.end(), [&](const auto& m) { return m.name == name; });
+/// The members of a project's archive, and those that project.json names.
+struct Archive {
+    std::vector<ZipMember> members;
+    std::set<std::string> named{"mimetype", "project.json"};
+
+    std::vector<std::byte>& bytes_of(const std::string& name) {
+        const auto found = std::ranges::find(members, name, &ZipMember::name);
         if (found == members.end())
             throw Error(fmt::format("has no member {}; expected it in a project", printable(name)));
-        return found;
-    };
-    Parsed parsed = parse_project(find("project.json")->bytes);
-    auto image = find(parsed.image_file);
-    std::set<std::string> known{"mimetype", "project.json", parsed.image_file};
-    std::size_t painted = 0, texels = 0;
-    const auto take_paint = [&](const std::optional<PaintMember>& member) -> PaintPtr {
-        if (!member) return nullptr;
-        if (!known.insert(member->file).second)
-            throw Error(fmt::format("project.json names {} twice; expected a file for each", member->file));
-        try {
-            const std::vector<std::byte>& png = find(member->file)->bytes;
-            texels += paint_texels(png);
-            if (texels > max_paint_texels) throw too_much_paint(texels, max_paint_texels);
-            PaintMap map = decode_paint(png, member->extent);
-            painted += painted_texels(map);
-            if (painted > max_painted_texels) throw too_much_paint(painted, max_painted_texels);
-            return std::make_shared<const PaintMap>(std::move(map));
-        } catch (const Error& error) {
-            throw Error(fmt::format("{}: {}", member->file, error.what()));
-        }
-    };
+        return found->bytes;
+    }
+};
+
+Archive open_archive(std::span<const std::byte> bytes) {
+    Archive archive;
+    archive.members = read_zip(bytes, max_file_bytes);
+    const auto& members = archive.members;
+    if (members.empty() || members[0].name != "mimetype" || members[0].bytes != to_bytes(project_mimetype))
+        throw Error("is not a Probewarp project; expected a ZIP archive whose first member is its mimetype");
+    return archive;
+}
+
+/// Null where there is no member.
+PaintPtr read_paint(Archive& archive, const std::optional<PaintMember>& member, PaintBudget& budget) {
+    if (!member) return nullptr;
+    if (!archive.named.insert(member->file).second)
+        throw Error(fmt::format("project.json names {} twice; expected a file for each", member->file));
+    try {
+        const std::vector<std::byte>& png = archive.bytes_of(member->file);
+        return std::make_shared<const PaintMap>(decode_paint(png, member->extent, budget));
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", member->file, error.what()));
+    }
+}
+
+Document decode(std::vector<std::byte> bytes) {
+    Archive archive = open_archive(bytes);
+    bytes = {};  // the picture's pixels need the room
+    Parsed parsed = parse_project(archive.bytes_of("project.json"));
+    std::vector<std::byte>& image = archive.bytes_of(parsed.image_file);
+    archive.named.insert(parsed.image_file);
+    PaintBudget budget;
     for (std::size_t i = 0; i < parsed.paint.size(); ++i)
-        parsed.document.probes[i].paint = take_paint(parsed.paint[i]);
-    parsed.document.stiffness = take_paint(parsed.stiffness);
-    for (const ZipMember& member : members)
-        if (!known.contains(member.name))
+        parsed.document.probes[i].paint = read_paint(archive, parsed.paint[i], budget);
+    parsed.document.stiffness = read_paint(archive, parsed.stiffness, budget);
+    for (const ZipMember& member : archive.members)
+        if (!archive.named.contains(member.name))
             throw Error(fmt::format(
                 "has a member {} that this version does not know; expected a project of this version",
                 member.name));
-    Picture picture = decode_picture(std::move(image->bytes), parsed.image_file);
+    Picture picture = decode_picture(std::move(image), parsed.image_file);
     picture.name = parsed.image_name;
     parsed.document.picture = std::make_shared<const Picture>(std::move(picture));
     check_size(parsed.document);
@@ -372,17 +373,16 @@ std::vector<std::byte> encode_project(const Document& document) {
     std::vector<ZipMember> members{{"mimetype", to_bytes(project_mimetype), true},
                                    {"project.json", text, false},
                                    {image_member(picture), picture.original, true}};
-    std::size_t painted = 0, texels = 0;
+    PaintBudget budget;
     const auto add_paint = [&](const PaintPtr& paint, const std::string& file) {
         if (!paint) return;
-        texels += std::size_t(paint->width) * std::size_t(paint->height);
-        painted += painted_texels(*paint);
+        budget.texels += std::size_t(paint->width) * std::size_t(paint->height);
+        budget.painted += painted_texels(*paint);
         members.push_back({file, encode_paint(*paint), true});
     };
     for (const Probe& probe : document.probes) add_paint(probe.paint, paint_file(probe));
     add_paint(document.stiffness, stiffness_file);
-    if (texels > max_paint_texels) throw too_much_paint(texels, max_paint_texels);
-    if (painted > max_painted_texels) throw too_much_paint(painted, max_painted_texels);
+    budget.check();
     return write_zip(members);
 }
 

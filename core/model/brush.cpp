@@ -10,8 +10,6 @@ namespace probewarp {
 
 namespace {
 
-constexpr std::size_t texels_a_tile = std::size_t{paint_tile_side} * paint_tile_side;
-
 std::vector<float>& tile_of(std::vector<std::vector<float>>& tiles, const PaintMap& map, std::size_t tile,
                             float otherwise) {
     if (tiles.empty()) tiles.resize(map.tiles.size());
@@ -81,10 +79,7 @@ struct MaskPart {
     const Mask& mask;
     const TileRect& rect;
 
-    float operator()(int x, int y) const {
-        return mask
-            .strength[std::size_t(y - mask.top) * std::size_t(mask.width) + std::size_t(x - mask.left)];
-    }
+    float operator()(int x, int y) const { return mask.strength[mask.at(x, y)]; }
     bool empty() const {
         for (int y = rect.top; y < rect.bottom; ++y)
             for (int x = rect.left; x < rect.right; ++x)

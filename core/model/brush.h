@@ -34,6 +34,11 @@ struct Mask {
     int left = 0, top = 0, width = 0, height = 0;  ///< texels, within the map
     std::vector<float> strength;                   ///< height x width, row-major, [0, 1]
     double radius = 0;                             ///< the brush's on the picture at rest, texels along x
+
+    /// The place in `strength` of texel (x, y) of the map.
+    std::size_t at(int x, int y) const {
+        return std::size_t(y - top) * std::size_t(width) + std::size_t(x - left);
+    }
 };
 
 /// Where a dab at `centre` (image pixels of the deformed picture) falls on the paint: every texel whose place

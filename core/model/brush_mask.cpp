@@ -253,13 +253,6 @@ std::optional<glm::dvec2> rest_at_centre(const Ground& ground, std::span<const s
     return topmost;
 }
 
-/// Whether the mesh has the cell at (column, row).
-bool has_cell(const Mesh& mesh, int column, int row) {
-    if (column < 0 || row < 0 || column >= mesh.columns || row >= mesh.rows) return false;
-    const std::size_t cell = std::size_t(row) * std::size_t(mesh.columns) + std::size_t(column);
-    return mesh.first_triangle[cell] < mesh.first_triangle[cell + 1];
-}
-
 bool is_outermost(const Mesh& mesh, int column, int row) {
     for (int y = row - 1; y <= row + 1; ++y)
         for (int x = column - 1; x <= column + 1; ++x)
@@ -333,10 +326,7 @@ class MaskPainter {
     Range columns() const { return {mask.left, mask.left + mask.width}; }
     Range rows() const { return {mask.top, mask.top + mask.height}; }
 
-    float& strength_at(int column, int row) {
-        return mask.strength[std::size_t(row - mask.top) * std::size_t(mask.width) +
-                             std::size_t(column - mask.left)];
-    }
+    float& strength_at(int column, int row) { return mask.strength[mask.at(column, row)]; }
 
     Corners in_texels(Corners rest) const {
         for (glm::dvec2& p : rest) p = (p - origin) / texel;

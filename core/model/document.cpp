@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -16,6 +17,11 @@ PictureFrame frame_of(const Image& image) {
     return {centre(image), double(std::max(image.width, image.height))};
 }
 
+PaintMap map_of(const Document& document, const PaintPtr& paint) {
+    const Image& image = document.picture->image;
+    return paint ? *paint : new_paint_map(image.width, image.height);
+}
+
 const Probe* find_probe(const Document& document, int id) {
     const auto found = std::find_if(document.probes.begin(), document.probes.end(),
                                     [id](const Probe& probe) { return probe.id == id; });
@@ -24,6 +30,12 @@ const Probe* find_probe(const Document& document, int id) {
 
 Probe* find_probe(Document& document, int id) {
     return const_cast<Probe*>(find_probe(std::as_const(document), id));
+}
+
+std::size_t place_of(const Document& document, int id) {
+    const Probe* probe = find_probe(document, id);
+    assert(probe);
+    return std::size_t(probe - document.probes.data());
 }
 
 Probe new_probe(const Document& document, glm::dvec2 rest) {
@@ -38,6 +50,11 @@ Probe new_probe(const Document& document, glm::dvec2 rest) {
         probe.radius =
             std::max(1.0, std::max(document.picture->image.width, document.picture->image.height) / 8.0);
     return probe;
+}
+
+bool is_painted(const Document& document) {
+    return std::any_of(document.probes.begin(), document.probes.end(),
+                       [](const Probe& probe) { return probe.paint != nullptr; });
 }
 
 void replace_picture(Document& document, PicturePtr picture) {

@@ -1,6 +1,7 @@
 // What a person works on, as one value: the picture, the probes on it, and how they deform it.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -30,12 +31,21 @@ glm::dvec2 centre(const Image& image);
 /// Where the picture lies, for its paint.
 PictureFrame frame_of(const Image& image);
 
+/// The paint to be changed: a copy, or an empty map over the picture where it is null.
+PaintMap map_of(const Document& document, const PaintPtr& paint);
+
 /// The probe of that id, or null.
 Probe* find_probe(Document& document, int id);
 const Probe* find_probe(const Document& document, int id);
 
+/// The place among the document's probes of the one of that id, which must be there.
+std::size_t place_of(const Document& document, int id);
+
 /// A probe at `rest` with a fresh id, the next colour, and a reach of an eighth of the picture's longer side.
 Probe new_probe(const Document& document, glm::dvec2 rest);
+
+/// Whether any probe has paint.
+bool is_painted(const Document& document);
 
 /// Puts another picture under the probes. Where its size differs, they keep their places relative to its
 /// centre and its longer side.

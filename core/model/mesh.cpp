@@ -66,6 +66,15 @@ std::vector<std::uint8_t> visible_cells(const Image& image, const MeshSettings& 
     return kept;
 }
 
+bool has_cell(const Mesh& mesh, std::size_t cell) {
+    return mesh.first_triangle[cell] < mesh.first_triangle[cell + 1];
+}
+
+bool has_cell(const Mesh& mesh, int column, int row) {
+    return column >= 0 && row >= 0 && column < mesh.columns && row < mesh.rows &&
+           has_cell(mesh, std::size_t(row) * std::size_t(mesh.columns) + std::size_t(column));
+}
+
 namespace {
 
 double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
@@ -106,19 +115,30 @@ CellsAt cells_at(const Mesh& mesh, glm::dvec2 point) {
 /// The cell of the mesh at `point`; empty beside it.
 std::optional<std::size_t> cell_at(const Mesh& mesh, glm::dvec2 point) {
     for (const std::size_t cell : cells_at(mesh, point))
-        if (mesh.first_triangle[cell + 1] > mesh.first_triangle[cell]) return cell;
+        if (has_cell(mesh, cell)) return cell;
     return {};
+}
+
+/// The places in the mesh's grid of the crossings at a cell's corners, row by row.
+std::array<std::size_t, 4> crossings_of(const Mesh& mesh, std::size_t cell) {
+    const std::size_t columns = std::size_t(mesh.columns), across = columns + 1;
+    const std::size_t first = cell / columns * across + cell % columns;
+    return {first, first + 1, first + across, first + across + 1};
+}
+
+/// The grid's vertices there.
+std::array<std::uint32_t, 4> corners_of(const Mesh& mesh, std::size_t cell) {
+    const auto [top_left, top_right, bottom_left, bottom_right] = crossings_of(mesh, cell);
+    return {mesh.grid[top_left], mesh.grid[top_right], mesh.grid[bottom_left], mesh.grid[bottom_right]};
 }
 
 /// The grid's vertices that a kept cell has, row by row.
 void add_grid_vertices(Mesh& mesh, std::span<const std::uint8_t> kept) {
-    const std::size_t columns = std::size_t(mesh.columns), across = columns + 1;
+    const std::size_t across = std::size_t(mesh.columns) + 1;
     mesh.grid.assign(across * (std::size_t(mesh.rows) + 1), no_vertex);
     for (std::size_t cell = 0; cell < kept.size(); ++cell) {
         if (!kept[cell]) continue;
-        const std::size_t corner = cell / columns * across + cell % columns;
-        for (const std::size_t at : {corner, corner + 1, corner + across, corner + across + 1})
-            mesh.grid[at] = 0;
+        for (const std::size_t at : crossings_of(mesh, cell)) mesh.grid[at] = 0;
     }
     for (std::size_t at = 0; at < mesh.grid.size(); ++at) {
         if (mesh.grid[at] == no_vertex) continue;
@@ -192,14 +212,10 @@ Mesh probe_mesh(const Image& image, int cells, std::span<const std::uint8_t> kep
     mesh.triangles.reserve(kept.size() * 6 + rests.size() * 6);
     auto next = by_cell.begin();
     std::vector<Corners> cut;
-    const std::size_t across = std::size_t(columns) + 1;
     for (std::size_t cell = 0; cell < kept.size(); ++cell) {
         mesh.first_triangle.push_back(std::uint32_t(mesh.triangles.size() / 3));
         if (!kept[cell]) continue;
-        const std::size_t corner = cell / std::size_t(columns) * across + cell % std::size_t(columns);
-        const std::uint32_t top_left = mesh.grid[corner], top_right = mesh.grid[corner + 1];
-        const std::uint32_t bottom_left = mesh.grid[corner + across],
-                            bottom_right = mesh.grid[corner + across + 1];
+        const auto [top_left, top_right, bottom_left, bottom_right] = corners_of(mesh, cell);
         cut.assign({{top_left, bottom_right, top_right}, {top_left, bottom_left, bottom_right}});
         while (next != by_cell.end() && next->first < cell) ++next;  // cells that are left out
         for (; next != by_cell.end() && next->first == cell; ++next) {
@@ -262,10 +278,7 @@ std::optional<MeshPoint> locate_at_rest(const Mesh& mesh, glm::dvec2 point) {
 std::array<std::uint32_t, 4> grid_corners(const Mesh& mesh, glm::dvec2 point) {
     const auto cell = cell_at(mesh, point);
     if (!cell) return {no_vertex, no_vertex, no_vertex, no_vertex};
-    const std::size_t across = std::size_t(mesh.columns) + 1;
-    const std::size_t corner = *cell / std::size_t(mesh.columns) * across + *cell % std::size_t(mesh.columns);
-    return {mesh.grid[corner], mesh.grid[corner + 1], mesh.grid[corner + across],
-            mesh.grid[corner + across + 1]};
+    return corners_of(mesh, *cell);
 }
 
 glm::dvec2 rest_point(const Mesh& mesh, const MeshPoint& at) {

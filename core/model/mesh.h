@@ -55,6 +55,11 @@ std::array<int, 2> grid_size(int width, int height, int cells);
 /// alpha, where the settings do not ask, or where nothing at all is visible.
 std::vector<std::uint8_t> visible_cells(const Image& image, const MeshSettings& settings);
 
+/// Whether the mesh has that cell of its grid (its place, row by row): one that is left out has no triangle.
+bool has_cell(const Mesh& mesh, std::size_t cell);
+/// Likewise; beside the grid there is none.
+bool has_cell(const Mesh& mesh, int column, int row);
+
 /// The whole grid over [0, width] x [0, height], without probes. Requires cells in [min_cells, max_cells].
 Mesh grid_mesh(int width, int height, int cells);
 

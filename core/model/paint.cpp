@@ -3,7 +3,18 @@
 #include <cassert>
 #include <cmath>
 
+#include "model/sum_of.h"
+
 namespace probewarp {
+
+PaintMap empty_paint_map(int width, int height, glm::dvec2 extent) {
+    PaintMap map;
+    map.width = width;
+    map.height = height;
+    map.extent = extent;
+    map.tiles.resize(std::size_t(tiles_along(width)) * std::size_t(tiles_along(height)));
+    return map;
+}
 
 PaintMap new_paint_map(int width, int height) {
     assert(width > 0 && height > 0);
@@ -12,13 +23,7 @@ PaintMap new_paint_map(int width, int height) {
     const auto texels = [=](int side) {
         return std::max(1, int(std::lround(double(along) * side / longer)));
     };
-    const auto tiles = [](int side) { return std::size_t((side + paint_tile_side - 1) / paint_tile_side); };
-    PaintMap map;
-    map.width = texels(width);
-    map.height = texels(height);
-    map.extent = glm::dvec2(width, height) / double(longer);
-    map.tiles.resize(tiles(map.width) * tiles(map.height));
-    return map;
+    return empty_paint_map(texels(width), texels(height), glm::dvec2(width, height) / double(longer));
 }
 
 glm::dvec2 to_texels(const PaintMap& map, const PictureFrame& frame, glm::dvec2 point) {
@@ -31,10 +36,7 @@ glm::dvec2 to_picture(const PaintMap& map, const PictureFrame& frame, glm::dvec2
 
 Paint texel(const PaintMap& map, int x, int y) {
     assert(x >= 0 && y >= 0 && x < map.width && y < map.height);
-    const int across = (map.width + paint_tile_side - 1) / paint_tile_side;
-    const auto& tile =
-        map.tiles[std::size_t(y / paint_tile_side) * std::size_t(across) + std::size_t(x / paint_tile_side)];
-    return texel(tile.get(), TileRect::at(x, y));
+    return texel(map.tiles[tile_at(map, x, y)].get(), TileRect::at(x, y));
 }
 
 std::optional<Taps> taps_at(const PaintMap& map, glm::dvec2 at) {
@@ -46,11 +48,10 @@ std::optional<Taps> taps_at(const PaintMap& map, glm::dvec2 at) {
     const double right_part = x - left, lower_part = y - top;
     const std::array<int, 2> columns{left, std::min(left + 1, map.width - 1)};
     const std::array<int, 2> rows{top, std::min(top + 1, map.height - 1)};
-    const int across = (map.width + paint_tile_side - 1) / paint_tile_side;
     Taps taps;
     for (std::size_t k = 0; k < 4; ++k) {
         const int column = columns[k % 2], row = rows[k / 2];
-        taps.tile[k] = std::size_t(row / paint_tile_side * across + column / paint_tile_side);
+        taps.tile[k] = tile_at(map, column, row);
         taps.at[k] = TileRect::at(column, row);
         taps.weight[k] = (k % 2 ? right_part : 1 - right_part) * (k / 2 ? lower_part : 1 - lower_part);
     }
@@ -120,9 +121,7 @@ void settle(std::span<const float> automatic, std::span<const Paint> paint,
             std::span<const std::uint8_t> locked, std::span<float> settled) {
     assert(paint.size() == automatic.size() && locked.size() == automatic.size() &&
            settled.size() == automatic.size());
-    double total = 0;
-    for (const float a : automatic) total += a;
-    const double each = 1 / total;
+    const double each = 1 / sum_of(automatic);
     const auto painted = [&](std::size_t i) { return double(paint[i].coverage) * paint[i].value; };
     const auto following = [&](std::size_t i) {
         return (1 - double(paint[i].coverage)) * (automatic[i] * each);

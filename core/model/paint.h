@@ -16,15 +16,19 @@
 
 namespace probewarp {
 
-inline constexpr int paint_tile_side = 64;         // texels
-inline constexpr int max_paint_side = 32768;       // texels
+inline constexpr int paint_tile_side = 64;    // texels
+inline constexpr int max_paint_side = 32768;  // texels
+inline constexpr std::size_t texels_a_tile = std::size_t{paint_tile_side} * paint_tile_side;
 inline constexpr std::uint16_t paint_one = 65535;  // what stands for 1
 
 /// 64 x 64 texels, row-major. Where coverage is 0 the value means nothing and is 0.
 struct PaintTile {
-    std::array<std::uint16_t, std::size_t{paint_tile_side} * paint_tile_side> value{};     ///< 65535 is 1
-    std::array<std::uint16_t, std::size_t{paint_tile_side} * paint_tile_side> coverage{};  ///< 65535 is 1
+    std::array<std::uint16_t, texels_a_tile> value{};     ///< 65535 is 1
+    std::array<std::uint16_t, texels_a_tile> coverage{};  ///< 65535 is 1
 };
+
+/// Tiles along a side of that many texels: ceil(side / 64).
+constexpr int tiles_along(int side) { return (side + paint_tile_side - 1) / paint_tile_side; }
 
 /// A value: copies share their tiles, and a tile that is shared is never written to.
 struct PaintMap {
@@ -47,6 +51,9 @@ struct PictureFrame {
     double longer = 1;     ///< the picture's longer side, image pixels
 };
 
+/// An empty map of width x height texels over `extent` (see PaintMap).
+PaintMap empty_paint_map(int width, int height, glm::dvec2 extent);
+
 /// An empty map over a picture of that size; as many texels along the longer side as the picture has pixels,
 /// at least 256 and at most 2048.
 PaintMap new_paint_map(int width, int height);
@@ -66,6 +73,12 @@ struct Paint {
 constexpr float from_stored(std::uint16_t n) { return float(n) / float(paint_one); }
 constexpr std::uint16_t to_stored(float x) {
     return x > 0 ? std::uint16_t(std::min(x, 1.0f) * float(paint_one) + 0.5f) : std::uint16_t{0};
+}
+
+/// The place in the map's tiles of the one that texel (x, y) is in.
+inline std::size_t tile_at(const PaintMap& map, int x, int y) {
+    return std::size_t(y / paint_tile_side) * std::size_t(tiles_along(map.width)) +
+           std::size_t(x / paint_tile_side);
 }
 
 /// Texel `at` (row-major) of a tile; of null no paint.
@@ -144,12 +157,11 @@ void for_each_tile(const PaintMap& map, int left, int top, int right, int bottom
     left = std::max(left, 0), top = std::max(top, 0);
     right = std::min(right, map.width), bottom = std::min(bottom, map.height);
     if (left >= right || top >= bottom) return;
-    const int across = (map.width + side - 1) / side;
     for (int row = top / side; row <= (bottom - 1) / side; ++row)
         for (int column = left / side; column <= (right - 1) / side; ++column)
-            visit(TileRect{std::size_t(row) * std::size_t(across) + std::size_t(column),
-                           std::max(left, column * side), std::max(top, row * side),
-                           std::min(right, (column + 1) * side), std::min(bottom, (row + 1) * side)});
+            visit(TileRect{tile_at(map, column * side, row * side), std::max(left, column * side),
+                           std::max(top, row * side), std::min(right, (column + 1) * side),
+                           std::min(bottom, (row + 1) * side)});
 }
 
 template <class Edit>

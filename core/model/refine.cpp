@@ -6,13 +6,17 @@
 #include <cmath>
 #include <deque>
 
+#include "model/sum_of.h"
+
 namespace probewarp {
 
-bool is_refined(const Document& document) {
+bool is_limited(const Document& document) {
     const std::size_t most = std::size_t(document.weights.most);
-    return document.stiffness || (most > 0 && most < document.probes.size()) ||
-           std::any_of(document.probes.begin(), document.probes.end(),
-                       [](const Probe& probe) { return probe.paint != nullptr; });
+    return most > 0 && most < document.probes.size();
+}
+
+bool is_refined(const Document& document) {
+    return document.stiffness || is_limited(document) || is_painted(document);
 }
 
 namespace {
@@ -41,7 +45,7 @@ void add_runs(const Mesh& mesh, glm::dvec2 least, glm::dvec2 most, std::vector<V
 void add_differences(const PaintMap* before, const PaintMap* after, const PictureFrame& frame,
                      const Mesh& mesh, std::vector<VertexRun>& runs) {
     const PaintMap& map = after ? *after : *before;
-    const std::size_t across = std::size_t((map.width + paint_tile_side - 1) / paint_tile_side);
+    const std::size_t across = std::size_t(tiles_along(map.width));
     for (std::size_t i = 0; i < map.tiles.size(); ++i) {
         if ((before ? before->tiles[i] : nullptr) == (after ? after->tiles[i] : nullptr)) continue;
         const glm::dvec2 corner = double(paint_tile_side) * glm::dvec2(i % across, i / across);
@@ -95,22 +99,17 @@ std::vector<bool> anchored_vertices(const Mesh& mesh) {
 
 void open_anchor(const Binding& binding, const std::vector<bool>& anchored, std::size_t vertex, float covered,
                  std::span<float> row) {
-    const auto divide_by_sum = [](std::span<float> weights, float part) {
-        float total = 0;
-        for (const float w : weights) total += w;
-        for (float& w : weights) w *= part / total;
-    };
     // The cell's corners are all of its vertices that may be nobody's own.
     std::array<std::uint32_t, 4> corners{};
     std::size_t count = 0;
     for (const std::uint32_t v : grid_corners(*binding.mesh, binding.mesh->rest[vertex]))
         if (v != no_vertex && !anchored[v]) corners[count++] = v;
-    divide_by_sum(row, count > 0 ? 1 - covered : 1);
+    const float own = (count > 0 ? 1 - covered : 1) / float(sum_of(row));
+    for (float& w : row) w *= own;
     for (std::size_t k = 0; k < count; ++k) {
         const auto corner = std::span(binding.automatic).subspan(corners[k] * row.size(), row.size());
-        float total = 0;
-        for (const float w : corner) total += w;
-        for (std::size_t i = 0; i < row.size(); ++i) row[i] += covered * corner[i] / (total * float(count));
+        const float total = float(sum_of(corner)) * float(count);
+        for (std::size_t i = 0; i < row.size(); ++i) row[i] += covered * corner[i] / total;
     }
 }
 
@@ -120,11 +119,8 @@ void settle_run(const Document& document, const Binding& binding, VertexRun run,
     const PictureFrame frame = frame_of(document.picture->image);
     std::vector<Paint> paint(probes);
     std::vector<std::uint8_t> locked(probes);
-    bool painted = false;
-    for (std::size_t i = 0; i < probes; ++i) {
-        locked[i] = document.probes[i].locked;
-        painted = painted || document.probes[i].paint;
-    }
+    for (std::size_t i = 0; i < probes; ++i) locked[i] = document.probes[i].locked;
+    const bool painted = is_painted(document);
     const std::vector<bool> anchored = painted ? anchored_vertices(*binding.mesh) : std::vector<bool>();
     for (std::size_t k = 0; k < run.count; ++k) {
         const auto automatic = std::span(binding.automatic).subspan((run.first + k) * probes, probes);
@@ -142,7 +138,7 @@ void settle_run(const Document& document, const Binding& binding, VertexRun run,
         if (anchored[run.first + k]) open_anchor(binding, anchored, run.first + k, covered, row);
         settle(row, paint, locked, row);
     }
-    if (document.weights.most > 0 && !document.stiffness)
+    if (is_limited(document) && !document.stiffness)
         keep_heaviest(std::size_t(document.weights.most), probes, weights);
 }
 
@@ -217,15 +213,10 @@ void stiffen(const Mesh& mesh, std::span<const float> stiffness, std::size_t pro
     const int regions = stiff_regions(Neighbours(mesh), stiffness, region);
     if (regions == 0) return;
     std::vector<double> mean(std::size_t(regions) * probes), mass(std::size_t(regions), 0.0);
-    const auto total = [](std::span<const float> row) {
-        double sum = 0;
-        for (const float w : row) sum += double(w);
-        return sum;
-    };
     for (std::size_t v = 0; v < region.size(); ++v) {
         if (region[v] < 0) continue;
         const auto row = weights.subspan(v * probes, probes);
-        const double part = double(stiffness[v]) / total(row);
+        const double part = double(stiffness[v]) / sum_of(row);
         const std::size_t r = std::size_t(region[v]);
         for (std::size_t i = 0; i < probes; ++i) mean[r * probes + i] += part * double(row[i]);
         mass[r] += double(stiffness[v]);
@@ -233,7 +224,7 @@ void stiffen(const Mesh& mesh, std::span<const float> stiffness, std::size_t pro
     for (std::size_t v = 0; v < region.size(); ++v) {
         if (region[v] < 0) continue;
         const auto row = weights.subspan(v * probes, probes);
-        const double s = double(stiffness[v]), own = (1 - s) / total(row);
+        const double s = double(stiffness[v]), own = (1 - s) / sum_of(row);
         const std::size_t r = std::size_t(region[v]);
         for (std::size_t i = 0; i < probes; ++i)
             row[i] = float(own * double(row[i]) + s * mean[r * probes + i] / mass[r]);
@@ -249,7 +240,7 @@ std::vector<float> refined_weights(const Document& document, const Binding& bind
         const auto stiffness =
             stiffness_at(*document.stiffness, frame_of(document.picture->image), binding.mesh->rest);
         stiffen(*binding.mesh, stiffness, probes, weights);
-        if (document.weights.most > 0) keep_heaviest(std::size_t(document.weights.most), probes, weights);
+        if (is_limited(document)) keep_heaviest(std::size_t(document.weights.most), probes, weights);
     }
     return weights;
 }

@@ -10,6 +10,9 @@
 
 namespace probewarp {
 
+/// Whether a vertex may follow fewer probes than there are.
+bool is_limited(const Document& document);
+
 /// Whether anything refines the document's automatic weights; else they deform as they are.
 bool is_refined(const Document& document);
 

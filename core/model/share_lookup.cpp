@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "model/refine.h"
+#include "model/sum_of.h"
 
 namespace probewarp {
 
@@ -26,7 +27,7 @@ std::vector<std::uint32_t> nearest_kept_cells(const Mesh& mesh) {
         front.push_back(cell);
     };
     for (std::uint32_t cell = 0; cell < cells; ++cell)
-        if (mesh.first_triangle[cell] != mesh.first_triangle[cell + 1]) reach(cell, cell);
+        if (has_cell(mesh, cell)) reach(cell, cell);
     for (; !front.empty(); front.pop_front()) {
         const std::uint32_t cell = front.front(), from = nearest[cell];
         if (cell >= columns) reach(cell - columns, from);
@@ -37,12 +38,6 @@ std::vector<std::uint32_t> nearest_kept_cells(const Mesh& mesh) {
     return nearest;
 }
 
-/// Whether the vertices' weights are not the paint's and the automatic ones alone.
-bool is_interpolated(const Document& document) {
-    const int most = document.weights.most;
-    return document.stiffness || (most > 0 && std::size_t(most) < document.probes.size());
-}
-
 }  // namespace
 
 ShareLookup::ShareLookup(const Deformation& deformation)
@@ -51,14 +46,12 @@ ShareLookup::ShareLookup(const Deformation& deformation)
       frame_(frame_of(deformation.source.picture->image)) {
     const Document& document = deformation.source;
     const std::size_t probes = document.probes.size();
-    const bool interpolated = is_interpolated(document);
+    // Whether the vertices' weights are not the paint's and the automatic ones alone.
+    const bool interpolated = document.stiffness || is_limited(document);
     weights_ = interpolated ? weights_of(deformation) : std::span(deformation.binding->automatic);
     if (probes > 0)
-        for (std::size_t row = 0; row < weights_.size(); row += probes) {
-            double sum = 0;
-            for (const float w : weights_.subspan(row, probes)) sum += double(w);
-            to_share_.push_back(float(1 / sum));
-        }
+        for (std::size_t row = 0; row < weights_.size(); row += probes)
+            to_share_.push_back(float(1 / sum_of(weights_.subspan(row, probes))));
     for (std::size_t i = 0; i < probes; ++i) {
         locked_.push_back(document.probes[i].locked);
         if (interpolated || !document.probes[i].paint) continue;

@@ -12,29 +12,20 @@
 #include <csignal>
 #include <fstream>
 
+#include "pictures.h"
 #include "temporary_folder.h"
 
 namespace probewarp {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::error_of;
 using ::testing::HasSubstr;
 using testing::TemporaryFolder;
 
 std::vector<std::byte> bytes_of(std::string_view text) {
     const auto* first = reinterpret_cast<const std::byte*>(text.data());
     return {first, first + text.size()};
-}
-
-/// What a call has to say about its Error; "" where there was none.
-template <class Call>
-std::string error_of(const Call& call) {
-    try {
-        call();
-        return "";
-    } catch (const Error& error) {
-        return error.what();
-    }
 }
 
 std::vector<std::string> names_in(const fs::path& folder) {

@@ -16,14 +16,7 @@ using testing::whole;
 
 constexpr glm::dvec2 extent{1, 0.75};
 
-PaintMap map_of(int width, int height) {
-    PaintMap map;
-    map.width = width;
-    map.height = height;
-    map.extent = extent;
-    map.tiles.resize(std::size_t((width + 63) / 64) * std::size_t((height + 63) / 64));
-    return map;
-}
+PaintMap map_of(int width, int height) { return empty_paint_map(width, height, extent); }
 
 std::vector<std::byte> png_of(int width, int height, std::vector<std::uint8_t> rgba) {
     Image image;
@@ -63,6 +56,27 @@ TEST(PaintFile, TilesAllTheSameAreOne) {
     // Two full tiles that stand in six places, and three at the edge.
     EXPECT_EQ(painted_texels(read), 5u * 64 * 64);
     EXPECT_EQ(painted_texels(map_of(200, 200)), 0u);
+}
+
+TEST(PaintFile, TakesNoMoreThanIsLeftOfTheBudget) {
+    PaintMap map = map_of(128, 64);
+    edit_texels(map, 0, 0, 128, 64, [](int, int, Paint) { return Paint{0.5f, 1}; });
+    const std::vector<std::byte> png = encode_paint(map);
+    constexpr std::size_t texels = 128 * 64, painted = 64 * 64;  // its two tiles are one
+    PaintBudget budget;
+    EXPECT_TRUE(same_paint(decode_paint(png, extent, budget), map));
+    EXPECT_EQ(budget.texels, texels);
+    EXPECT_EQ(budget.painted, painted);
+    constexpr std::size_t most_texels = std::size_t{1} << 28, most_painted = std::size_t{1} << 27;
+    const auto refusal = [&](std::size_t texels_before, std::size_t painted_before) {
+        PaintBudget taken{texels_before, painted_before};
+        return error_of([&] { decode_paint(png, extent, taken); });
+    };
+    EXPECT_EQ(refusal(most_texels - texels, most_painted - painted), "");
+    EXPECT_EQ(refusal(most_texels - texels + 1, 0),
+              "the paint takes 268 million texels; expected at most 268 million");
+    EXPECT_EQ(refusal(0, most_painted - painted + 1),
+              "the paint takes 134 million texels; expected at most 134 million");
 }
 
 TEST(PaintFile, GreyWithoutAlphaCoversEverything) {

@@ -29,6 +29,8 @@ TEST(PaintMap, HasATexelAPixelWithinLimits) {
     EXPECT_EQ(map.height, 300);
     EXPECT_EQ(map.extent, glm::dvec2(1, 0.75));
     EXPECT_EQ(map.tiles.size(), 7u * 5u);
+    EXPECT_EQ(empty_paint_map(1, 64, {1, 1}).tiles.size(), 1u);
+    EXPECT_EQ(empty_paint_map(128, 65, {1, 1}).tiles.size(), 2u * 2u);
     EXPECT_TRUE(is_blank(map));
     const auto size = [](int width, int height) {
         const PaintMap made = new_paint_map(width, height);

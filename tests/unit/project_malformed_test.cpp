@@ -2,11 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "bad_projects.h"
 #include "io/file.h"
-#include "io/image_file.h"
-#include "io/project.h"
-#include "pictures.h"
-#include "raw_zip.h"
 
 namespace probewarp {
 namespace {
@@ -15,21 +12,17 @@ using testing::Bytes;
 using testing::deflated;
 using testing::error_of;
 using ::testing::HasSubstr;
+using testing::one_pixel;
 using testing::raw_zip;
 using testing::RawMember;
+using testing::refusal;
 using testing::to_bytes;
+using testing::with_other_json;
 
 const std::string good_json = R"({"format": 1, "image": {"file": "image.png", "name": "a.png"},
     "mesh": {"cells": 10}, "weights": "inverse-distance", "blend": "dlb",
     "probes": [{"id": 3, "name": "P", "colour": "#e69f00", "rest": [1.5, 2], "now": [3, 4],
                 "angle_radians": 0.25, "radius": 10, "locked": false, "visible": true}]})";
-
-Bytes one_pixel() {
-    Image image;
-    image.width = image.height = 1;
-    image.rgba = std::vector<std::uint8_t>{1, 2, 3, 255};
-    return find_image_format("png")->encode(image, {});
-}
 
 std::vector<RawMember> good_members() {
     return {{"mimetype", to_bytes(project_mimetype)},
@@ -37,26 +30,8 @@ std::vector<RawMember> good_members() {
             {"image.png", one_pixel()}};
 }
 
-/// What opening says, "" where it opens. Whatever it says is one line that begins with the file's name.
-std::string refusal(const Bytes& bytes) {
-    const std::string error = error_of([&] { decode_project(bytes, "folder/bad.probewarp"); });
-    if (error.empty()) return error;
-    EXPECT_TRUE(error.starts_with("folder/bad.probewarp: ")) << error;
-    for (const char c : error) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << error;
-    return error;
-}
-
-std::string refusal(const std::vector<RawMember>& members) { return refusal(raw_zip(members)); }
-
-/// With another text in the place of `from`, which must be there.
 std::string refusal_with(const std::string& from, const std::string& to) {
-    std::string json = good_json;
-    const auto at = json.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    if (at == std::string::npos) return "";
-    auto members = good_members();
-    members[1].bytes = to_bytes(json.replace(at, from.size(), to));
-    return refusal(members);
+    return refusal(with_other_json(good_members(), from, to));
 }
 
 TEST(MalformedProject, TheGoodOneOpens) {

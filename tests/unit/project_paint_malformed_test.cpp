@@ -3,22 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/image_file.h"
+#include "bad_projects.h"
 #include "io/paint_file.h"
-#include "io/project.h"
 #include "model/paint_ops.h"
-#include "pictures.h"
-#include "raw_zip.h"
 
 namespace probewarp {
 namespace {
 
 using testing::Bytes;
-using testing::error_of;
 using ::testing::HasSubstr;
+using testing::one_pixel;
 using testing::raw_zip;
 using testing::RawMember;
+using testing::refusal;
 using testing::to_bytes;
+using testing::with_other_json;
 
 const std::string good_json = R"({"format": 2, "image": {"file": "image.png", "name": "a.png"},
     "mesh": {"cells": 10, "from_alpha": true, "threshold": 7, "margin": 2.5},
@@ -28,16 +27,9 @@ const std::string good_json = R"({"format": 2, "image": {"file": "image.png", "n
                 "angle_radians": 0.25, "radius": 10, "locked": false, "visible": true,
                 "paint": {"file": "paint/3.png", "extent": [1, 0.75]}}]})";
 
-Bytes one_pixel() {
-    Image image;
-    image.width = image.height = 1;
-    image.rgba = std::vector<std::uint8_t>{1, 2, 3, 255};
-    return find_image_format("png")->encode(image, {});
-}
-
 Bytes paint_png(float value) { return encode_paint(filled(new_paint_map(4, 3), value)); }
 
-constexpr std::size_t json_at = 1, paint_at = 3, stiffness_at = 4;  // in the members
+constexpr std::size_t paint_at = 3, stiffness_at = 4;  // in the members
 
 std::vector<RawMember> good_members() {
     return {{"mimetype", to_bytes(project_mimetype)},
@@ -47,23 +39,8 @@ std::vector<RawMember> good_members() {
             {"stiffness.png", paint_png(1)}};
 }
 
-/// What opening says, "" where it opens. Whatever it says is one line that begins with the file's name.
-std::string refusal(const std::vector<RawMember>& members) {
-    const std::string error = error_of([&] { decode_project(raw_zip(members), "folder/bad.probewarp"); });
-    if (error.empty()) return error;
-    EXPECT_TRUE(error.starts_with("folder/bad.probewarp: ")) << error;
-    for (const char c : error) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << error;
-    return error;
-}
-
-/// With another text in the place of the first `from`, which must be there.
 std::vector<RawMember> members_with(const std::string& from, const std::string& to) {
-    std::string json = good_json;
-    const auto at = json.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    auto members = good_members();
-    if (at != std::string::npos) members[json_at].bytes = to_bytes(json.replace(at, from.size(), to));
-    return members;
+    return with_other_json(good_members(), from, to);
 }
 
 std::string refusal_with(const std::string& from, const std::string& to) {

@@ -66,11 +66,8 @@ std::string any_name() {
 /// Paint of any size, with a few painted rectangles; or none.
 PaintPtr any_paint() {
     if (*whole(0, 2) == 0) return nullptr;
-    PaintMap map = new_paint_map(3, 2);
-    map.width = *whole(1, 130);
-    map.height = *whole(1, 130);
-    map.extent = {extreme(1e-6, 1e6), extreme(1e-6, 1e6)};
-    map.tiles.assign(std::size_t((map.width + 63) / 64) * std::size_t((map.height + 63) / 64), nullptr);
+    const int width = *whole(1, 130), height = *whole(1, 130);
+    PaintMap map = empty_paint_map(width, height, {extreme(1e-6, 1e6), extreme(1e-6, 1e6)});
     for (int rectangles = *whole(0, 3); rectangles > 0; --rectangles) {
         const int left = *whole(0, 129), top = *whole(0, 129);
         const auto value = from_stored(std::uint16_t(*whole(0, 65535)));
