@@ -87,7 +87,7 @@ std::span<const BlendMethod> blend_methods() {
         {"log-linear", "Logarithm at the centre",
          "When the picture is to swirl about its own centre; probes' whole turns are beyond it.",
          &deform_by<planar_log_linear>, &planar_log_linear},
-        {"spiral", "Spiral", "For twirls: any number of turns, spread evenly, and never a tear.",
+        {"spiral", "Spiral", "For twirls: any number of turns, spread evenly with the weights.",
          &deform_by<spiral>, &spiral},
         {"linear", "Linear",
          "To match programs that blend matrices: what lies between probes turned apart shrinks.",
