@@ -138,7 +138,8 @@ TEST(Blend, HalfwayBetweenNothingAndAQuarterTurnIsAnEighth) {
     // (1 + e^{i pi/4}) / |1 + e^{i pi/4}| = e^{i pi/8}, about the same centre.
     const std::complex<double> centre{5, -3};
     const auto turned = rotation(std::numbers::pi / 2, centre);
-    const auto blend = dlb<DualComplex<double>>(std::vector{2.0, 2.0}, std::vector{DualComplex<double>{}, turned}).p;
+    const auto blend =
+        dlb<DualComplex<double>>(std::vector{2.0, 2.0}, std::vector{DualComplex<double>{}, turned}).p;
     const auto expected = rotation(std::numbers::pi / 4, centre);
     EXPECT_LT(std::abs(blend.p0 - expected.p0), 1e-15);  // a few roundings of numbers up to 1
     EXPECT_LT(std::abs(blend.p1 - expected.p1), 1e-14);  // ... and of numbers up to 6

@@ -77,14 +77,61 @@ TEST(Deform, IsWithinAHundredthOfAPixelOfTheFormula) {
     });
 }
 
-TEST(Deform, LeavesEveryVertexExactlyWhereNoProbeMoved) {
+TEST(Deform, ByEveryBlendLeavesEveryVertexExactlyWhereNoProbeMoved) {
     expect_always("now = rest, in every bit", [] {
         Document document = any_document(1);
         for (Probe& probe : document.probes) probe.now = probe.rest, probe.angle = 0;
-        const Deformation deformation = deformed(document);
-        RC_ASSERT(deformation.now == mesh_of(deformation).rest);
-        RC_ASSERT(deformation.cancelled == 0u);
+        for (const BlendMethod& method : blend_methods()) {
+            document.blend = method.name;
+            const Deformation deformation = deformed(document);
+            RC_ASSERT(deformation.now == mesh_of(deformation).rest);
+            RC_ASSERT(deformation.cancelled == 0u);
+        }
     });
+}
+
+TEST(Deform, ByEveryBlendIsWhatTheBlendItselfSays) {
+    expect_always("the vertices against act(blend(weights, motions), v), and the cancelled are counted", [] {
+        Document document = any_document(4);
+        for (const BlendMethod& method : blend_methods()) {
+            document.blend = method.name;
+            const Deformation deformation = deformed(document);
+            const auto& rest = mesh_of(deformation).rest;
+            const glm::dvec2 middle = centre(document.picture->image);
+            const std::size_t probes = document.probes.size();
+            std::size_t cancelled = 0;
+            for (std::size_t v = 0; v < rest.size(); ++v) {
+                const auto row = weights_of(deformation).subspan(v * probes, probes);
+                const auto map =
+                    method.blend(std::vector<double>(row.begin(), row.end()), deformation.motions);
+                cancelled += map.cancelled;
+                if (method.name == "dlb") continue;  // its floats have a test of their own
+                const glm::dvec2 now = to_vec(act(map, to_complex(glm::dvec2(rest[v]) - middle))) + middle;
+                // Both are double but for what the vertex is rounded to: two floats of that size.
+                RC_ASSERT(distance(deformation.now[v], now) <= 3e-7 * (8192 + glm::length(now)));
+            }
+            if (method.name != "dlb") RC_ASSERT(deformation.cancelled == cancelled);
+        }
+    });
+}
+
+TEST(Deform, OnlyTheMovingLeastSquaresLookAtNoTurn) {
+    for (const BlendMethod& method : blend_methods()) {
+        Document document = blank_document(640, 480, 10);
+        document.blend = method.name;
+        add_probe(document, {100, 100}, {150, 90}, 0.5);
+        const Deformation deformation = deformed(document);
+        const bool least_squares = method.name.starts_with("mls");
+        const Motion<double> motion = motion_of(document.probes[0], {320, 240});
+        for (std::size_t v = 0; v < deformation.now.size(); ++v) {
+            const glm::dvec2 rest = mesh_of(deformation).rest[v];
+            const glm::dvec2 now =
+                least_squares ? rest + glm::dvec2(50, -10)
+                              : to_vec(act(similarity(motion), to_complex(rest - glm::dvec2(320, 240)))) +
+                                    glm::dvec2(320, 240);
+            ASSERT_LT(distance(deformation.now[v], now), 2e-4) << method.name;  // floats of 640 pixels
+        }
+    }
 }
 
 TEST(Deform, WithoutProbesMovesNothing) {
