@@ -464,6 +464,37 @@ class WindowTest(unittest.TestCase):
         desk.key("w")
         desk.wait(lambda: desk.seen(*rectangle) == plain, "the picture without its weights")
 
+    def test_blends_are_switched_undone_and_compared(self):
+        """The blend's list, undo, and another blend beside it, whose divider is dragged; exports are the document's."""
+        desk = self.desk(f"{options.images}/octopus.probewarp")
+        desk.wait_title("octopus.png – Probewarp")
+        desk.settle()
+        as_it_was = self.export(desk, "dlb.png").read_bytes()
+        # A line, nearly white, which begins above the picture, where there is nothing else.
+        divider = lambda x: all(max(row) > 220 for row in desk.seen(x - 1, 34, x + 1, 42))
+        middle = 48 + (1280 - 48 - 308) // 2
+        self.assertFalse(divider(middle))
+        desk.key("2")
+        self.assertTrue(divider(middle))
+        desk.drag([(middle, 700), (middle - 60, 700), (middle - 120, 700)])
+        self.assertTrue(divider(middle - 120))
+        self.assertFalse(divider(middle))
+        self.assertEqual(self.export(desk, "compared.png").read_bytes(), as_it_was)
+        desk.key("2")
+        self.assertFalse(divider(middle - 120))
+        # The list's fifth row is the spiral.
+        for place in ((1160, 388), (1110, 509)):
+            desk.ask("mousemove", *place, "sleep", "0.2", "click", "1")
+            desk.settle()
+        desk.wait_title("● octopus.png – Probewarp")
+        project = self.save(desk, "spiral.probewarp")
+        self.assertEqual(project_of(project)["blend"], "spiral")
+        spiral = self.export(desk, "spiral.png").read_bytes()
+        self.assertEqual(spiral, self.render(project, desk.home / "same.png"))
+        self.assertNotEqual(spiral, as_it_was)
+        desk.key("ctrl+z")
+        self.assertEqual(self.export(desk, "undone.png").read_bytes(), as_it_was)
+
     def test_scale_two(self):
         desk = self.open_sample(scale=2)
         desk.double_click(*desk.at(512, 694))
@@ -477,5 +508,5 @@ if __name__ == "__main__":
     for name in ("program", "images", "scratch"):
         parser.add_argument(f"--{name}", required=True)
     options, rest = parser.parse_known_args()
-    faulthandler.dump_traceback_later(280, exit=True)  # says where it hangs, should it hang
+    faulthandler.dump_traceback_later(340, exit=True)  # says where it hangs, should it hang
     unittest.main(argv=[sys.argv[0], *rest], verbosity=2)
