@@ -228,6 +228,8 @@ void export_to(App& app, const fs::path& path) {
     encode.background = settings.background.value_or(encode.background);
     encode.quality = app.export_dialog.quality;
     try {
+        // Where two blends are compared the renderer holds the other one's.
+        app.renderer->set_positions(app.editor.deformation.now, app.editor.deformation.moved);
         app.jobs.exporting =
             std::make_unique<ExportJob>(*app.renderer, app.editor.document, app.editor.deformation, settings);
     } catch (const std::exception& error) {
