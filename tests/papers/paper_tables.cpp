@@ -7,6 +7,7 @@
 #include <iostream>
 #include <vector>
 
+#include "dcn.h"
 #include "flops.h"
 
 namespace {
@@ -18,7 +19,8 @@ using probewarp::papers::Table;
 std::vector<Table> all_tables() {
     namespace papers = probewarp::papers;
     std::vector<Table> tables;
-    for (const auto rows : {papers::flops_tables()}) tables.insert(tables.end(), rows.begin(), rows.end());
+    for (const auto rows : {papers::flops_tables(), papers::dcn_tables()})
+        tables.insert(tables.end(), rows.begin(), rows.end());
     return tables;
 }
 
