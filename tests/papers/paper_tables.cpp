@@ -9,6 +9,7 @@
 
 #include "dcn.h"
 #include "flops.h"
+#include "kavan.h"
 
 namespace {
 
@@ -19,7 +20,7 @@ using probewarp::papers::Table;
 std::vector<Table> all_tables() {
     namespace papers = probewarp::papers;
     std::vector<Table> tables;
-    for (const auto rows : {papers::flops_tables(), papers::dcn_tables()})
+    for (const auto rows : {papers::flops_tables(), papers::dcn_tables(), papers::kavan_tables()})
         tables.insert(tables.end(), rows.begin(), rows.end());
     return tables;
 }
