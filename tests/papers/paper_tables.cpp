@@ -10,6 +10,7 @@
 #include "dcn.h"
 #include "flops.h"
 #include "kavan.h"
+#include "kavan_properties.h"
 
 namespace {
 
@@ -20,7 +21,8 @@ using probewarp::papers::Table;
 std::vector<Table> all_tables() {
     namespace papers = probewarp::papers;
     std::vector<Table> tables;
-    for (const auto rows : {papers::flops_tables(), papers::dcn_tables(), papers::kavan_tables()})
+    for (const auto rows : {papers::flops_tables(), papers::dcn_tables(), papers::kavan_tables(),
+                            papers::kavan_properties_tables()})
         tables.insert(tables.end(), rows.begin(), rows.end());
     return tables;
 }
