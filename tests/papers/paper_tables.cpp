@@ -11,6 +11,7 @@
 #include "flops.h"
 #include "kavan.h"
 #include "kavan_properties.h"
+#include "kavan_speed.h"
 
 namespace {
 
@@ -22,7 +23,7 @@ std::vector<Table> all_tables() {
     namespace papers = probewarp::papers;
     std::vector<Table> tables;
     for (const auto rows : {papers::flops_tables(), papers::dcn_tables(), papers::kavan_tables(),
-                            papers::kavan_properties_tables()})
+                            papers::kavan_properties_tables(), papers::kavan_speed_tables()})
         tables.insert(tables.end(), rows.begin(), rows.end());
     return tables;
 }
