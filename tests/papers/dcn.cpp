@@ -79,15 +79,26 @@ double unevenness(At at) {
     return fastest / slowest;
 }
 
+/// How far the way at(t) takes a point, t in [0, 1].
+template <class At>
+double furthest(At at, Complex v) {
+    double most = 0;
+    for (int i = 0; i <= 100; ++i) most = std::max(most, std::abs(act(at(i / 100.0), v) - v));
+    return most;
+}
+
 void print_evenness(std::ostream& out) {
-    out << "The fastest over the slowest angular velocity from the identity to a turn about the point (3, "
-           "-1), by "
-           "differences at 101 moments; 1 is uniform. DLB beside it, which is not, and its closed form "
+    out << "From a rigid transformation to the same followed by a turn about the point (3, -1): the fastest "
+           "over the "
+           "slowest angular velocity, by differences at 101 moments (1 is uniform), and how far that point "
+           "moves on "
+           "SLERP's way (0: it turns about it). DLB beside it, which is not uniform, and its closed form "
            "1 / cos^2(angle / 4). Nothing here is random.\n\n"
-           "| degrees apart | paper: SLERP | SLERP | DLB | DLB, closed form |\n|---|---|---|---|---|\n";
+           "| degrees apart | paper: SLERP | SLERP | the point moves | DLB | DLB, closed form |\n"
+           "|---|---|---|---|---|---|\n";
     for (const Evenness& e : evenness())
-        fmt::print(out, "| {:.0f} | 1 | {:.9f} | {:.6f} | {:.6f} |\n", degrees(e.apart), e.slerp, e.dlb,
-                   e.dlb_exact);
+        fmt::print(out, "| {:.0f} | 1 | {:.9f} | {:.0e} | {:.6f} | {:.6f} |\n", degrees(e.apart), e.slerp,
+                   e.centre_moves, e.dlb, e.dlb_exact);
 }
 
 // ---- The candy wrapper.
@@ -185,12 +196,15 @@ std::vector<Evenness> evenness() {
     std::vector<Evenness> rows;
     for (const double angle : {30, 90, 180, 270, 350}) {
         const double apart = angle * pi / 180, root = std::cos(apart / 4);
-        const P p, q = rotation(apart, Complex(3, -1));
-        rows.push_back({apart, unevenness([&](double t) { return slerp(p, q, t); }),
-                        unevenness([&](double t) {
-                            return dlb<P>(std::array{1 - t, t}, std::array{p, q}).p;
-                        }),
-                        1 / (root * root)});
+        const Complex centre(3, -1);
+        // Neither end is the identity, whose inverse is right even if inverses are wrong.
+        const P p = translation(Complex(2, 5)) * rotation(1.0, Complex(0, 0)),
+                q = rotation(apart, centre) * p;
+        const auto steady = [&](double t) { return slerp(p, q, t); };
+        const auto linear = [&](double t) { return dlb<P>(std::array{1 - t, t}, std::array{p, q}).p; };
+        const auto turned = [&](double t) { return steady(t) * inverse(p); };
+        rows.push_back(
+            {apart, unevenness(steady), furthest(turned, centre), unevenness(linear), 1 / (root * root)});
     }
     return rows;
 }

@@ -20,13 +20,15 @@ struct Distributivity {
 /// cancel, rounding is all that is left.
 Distributivity distributivity(std::size_t sets);
 
-/// The fastest over the slowest angular velocity from the identity to a turn by `apart` about a point.
+/// From one transformation to the same followed by a turn by `apart` about a point: the fastest over the
+/// slowest angular velocity, and how far the point moves that should stay.
 struct Evenness {
-    double apart;      ///< radians
-    double slerp;      ///< 1: uniform
-    double dlb;        ///< numerically, as slerp
-    double dlb_exact;  ///< 1 / cos^2(apart / 4): half the angle at t is the argument of 1 - t + t e^{i
-                       ///< apart/2}, so the velocity is proportional to 1 / |1 - t + t e^{i apart/2}|^2
+    double apart;         ///< radians
+    double slerp;         ///< 1: uniform
+    double centre_moves;  ///< on SLERP's way
+    double dlb;           ///< numerically, as slerp
+    double dlb_exact;     ///< 1 / cos^2(apart / 4): half the angle at t is the argument of 1 - t + t e^{i
+                          ///< apart/2}, so the velocity is proportional to 1 / |1 - t + t e^{i apart/2}|^2
 };
 std::vector<Evenness> evenness();  ///< from 30 to 350 degrees
 
