@@ -4,8 +4,11 @@
 #pragma once
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 #include <span>
 #include <tuple>
@@ -40,14 +43,12 @@ template <RigidTransformation P, class Element>
 Blend<P> normalised_sum(std::span<const typename P::Scalar> weights, std::span<const P> p, Element element) {
     using T = typename P::Scalar;
     assert(!p.empty() && weights.size() == p.size());
-    P s = weights[0] * element(0);
-    T total = std::abs(weights[0]);
-    for (std::size_t i = 1; i < p.size(); ++i) {
-        s = s + weights[i] * element(i);
-        total += std::abs(weights[i]);
-    }
-    const T least = cancelled_share<T> * total;
-    if (!(rotation_dot(s, s) >= least * least)) return {p[heaviest(weights)], true};
+    T total{};
+    for (const T w : weights) total += std::abs(w);
+    // Divided first: the square of a sum of small weights would be lost.
+    P s = (weights[0] / total) * element(0);
+    for (std::size_t i = 1; i < p.size(); ++i) s = s + (weights[i] / total) * element(i);
+    if (!(rotation_dot(s, s) >= cancelled_share<T> * cancelled_share<T>)) return {p[heaviest(weights)], true};
     return {normalised(s), false};
 }
 
@@ -59,18 +60,30 @@ Blend<P> dlb(std::span<const typename P::Scalar> weights, std::span<const P> p) 
     return normalised_sum(weights, p, [&](std::size_t i) { return p[i]; });
 }
 
-/// The heaviest of the p_i; of equals the one that turns least, then the one that turns clockwise: not the
-/// first, so that it does not depend on their order.
+/// The coordinates of p0, the real one first.
 template <class T>
-DualComplex<T> pivot_of_equals(std::span<const T> weights, std::span<const DualComplex<T>> p) {
+std::array<T, 2> turning_part(const DualComplex<T>& p) {
+    return {p.p0.real(), p.p0.imag()};
+}
+
+template <class T>
+std::array<T, 4> turning_part(const DualQuaternion<T>& q) {
+    return {q.q0.w, q.q0.x, q.q0.y, q.q0.z};
+}
+
+/// The place of the heaviest of the p_i = p(i), #weights of them; of equals the one that turns least, then
+/// the one that turns clockwise (in space: most about +x, then +y, then +z). Not the first, so that it
+/// depends neither on their order nor on their signs.
+template <class W, class Element>
+std::size_t pivot_of_equals(std::span<const W> weights, Element p) {
     const auto rank = [&](std::size_t i) {
-        const std::complex<T> turn = p[i].p0 * p[i].p0;
-        return std::tuple(std::abs(weights[i]), turn.real(), turn.imag());
+        // The greater of p and -p is the one whose first coordinate other than 0 is positive.
+        return std::tuple(weights[i], std::max(turning_part(p(i)), turning_part(-p(i))));
     };
     std::size_t best = 0;
-    for (std::size_t i = 1; i < p.size(); ++i)
+    for (std::size_t i = 1; i < weights.size(); ++i)
         if (rank(i) > rank(best)) best = i;
-    return p[best];
+    return best;
 }
 
 /// A rotation in the middle of the p_i's, which depends neither on their signs nor on their order: the u that
@@ -84,32 +97,45 @@ DualComplex<T> pivot(std::span<const T> weights, std::span<const DualComplex<T>>
         mean += weights[i] * (p[i].p0 * p[i].p0);
         total += weights[i];
     }
-    if (!(std::abs(mean) >= cancelled_share<T> * total)) return pivot_of_equals(weights, p);
+    if (!(std::abs(mean) >= cancelled_share<T> * total))
+        return p[pivot_of_equals(weights, [&](std::size_t i) { return p[i]; })];
     return {std::sqrt(mean / std::abs(mean)), std::complex<T>(0)};
 }
 
-/// As in the plane: the first eigenvector of sum w_i p0_i p0_i^T.
+/// As in the plane: the first eigenvector of sum w_i q0_i q0_i^T, determined where its eigenvalue stands
+/// alone. In double whatever T is, so that the order of the sum does not tell.
 template <class T>
 DualQuaternion<T> pivot(std::span<const T> weights, std::span<const DualQuaternion<T>> p) {
-    using Vector = Eigen::Matrix<T, 4, 1>;
-    Eigen::Matrix<T, 4, 4> sum = Eigen::Matrix<T, 4, 4>::Zero();
+    Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
     for (std::size_t i = 0; i < p.size(); ++i) {
-        const Vector v(p[i].q0.w, p[i].q0.x, p[i].q0.y, p[i].q0.z);
-        sum += weights[i] * v * v.transpose();
+        const Eigen::Vector4d v(p[i].q0.w, p[i].q0.x, p[i].q0.y, p[i].q0.z);
+        sum += double(weights[i]) * v * v.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<T, 4, 4>> solver(sum);
-    const Vector first = solver.eigenvectors().col(3);  // of the largest eigenvalue
-    return {{first[0], first[1], first[2], first[3]}, {T(0), T(0), T(0), T(0)}};
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
+    const Eigen::Vector4d& values = solver.eigenvalues();  // least first
+    if (!(values[3] - values[2] >= cancelled_share<double> * sum.trace()))
+        return p[pivot_of_equals(weights, [&](std::size_t i) { return p[i]; })];
+    const Eigen::Vector4d first = solver.eigenvectors().col(3);
+    return {{T(first[0]), T(first[1]), T(first[2]), T(first[3])}, {T(0), T(0), T(0), T(0)}};
+}
+
+/// -1 where -p is nearer to the pivot than p, else 1. Where both are as near, half a turn from it, the first
+/// other coordinate of the turn from the pivot to p decides: in the plane that turn is clockwise.
+template <RigidTransformation P>
+typename P::Scalar sign_towards(const P& centre, const P& p) {
+    using T = typename P::Scalar;
+    for (const T c : turning_part(p * inverse(centre)))  // the first is rotation_dot(p, centre)
+        if (std::abs(c) >= cancelled_share<T>) return c < T(0) ? T(-1) : T(1);
+    return T(1);
 }
 
 /// DLB, shortest way: each p_i with the sign that is nearer to the pivot (Kavan section 4, who takes one of
-/// the p_i for it). Shapes as dlb's; weights >= 0.
+/// the p_i for it). Up to its own sign the result depends neither on the signs of the p_i nor on their order.
+/// Shapes as dlb's; weights >= 0.
 template <RigidTransformation P>
 Blend<P> dlb_shortest(std::span<const typename P::Scalar> weights, std::span<const P> p) {
     const P centre = pivot(weights, p);
-    return normalised_sum(weights, p, [&](std::size_t i) {
-        return rotation_dot(p[i], centre) < typename P::Scalar(0) ? -p[i] : p[i];
-    });
+    return normalised_sum(weights, p, [&](std::size_t i) { return sign_towards(centre, p[i]) * p[i]; });
 }
 
 template <RigidTransformation P>
@@ -124,7 +150,7 @@ struct Iteration {
 template <class Log>
 auto length(const Log& x) {
     using std::sqrt;
-    auto sum = decltype(coordinates(x)[0] * coordinates(x)[0])(0);
+    typename decltype(coordinates(x))::value_type sum{};
     for (const auto c : coordinates(x)) sum += c * c;
     return sqrt(sum);
 }

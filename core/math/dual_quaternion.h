@@ -9,6 +9,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
+#include <numbers>
 
 #include "math/dual.h"
 #include "math/dual_complex.h"
@@ -124,7 +126,8 @@ glm::vec<3, T> act(const DualQuaternion<T>& q, const glm::vec<3, T>& v) {
     return v + half + half;
 }
 
-/// The turn by `angle` radians about the axis through the origin (right-handed). Requires |axis| = 1.
+/// The turn by `angle` radians about the axis through the origin (right-handed). Requires |axis| = 1. The
+/// angle is unwrapped: t and t + 2 pi act alike but are q and -q, and blend differently.
 template <class T>
 DualQuaternion<T> rotation(T angle, const glm::vec<3, T>& axis) {
     return {quaternion(std::cos(angle / T(2)), axis * std::sin(angle / T(2))),
@@ -177,16 +180,29 @@ DualQuaternion<T> exp(const DualQuaternionLog<T>& x) {
             quaternion(-sinc(h) * along, x.d * sinc(h) + x.r * (sinc_slope(h) * along))};
 }
 
-/// The inverse of exp for a unit, with |r| in [0, pi]. At |r| = pi (a whole turn, q0 = -1) the axis is
-/// unknown and no logarithm exists where it also shifts; rounding keeps sinc away from zero there, and what
-/// is returned is huge.
+/// The logarithm of the whole turn -1 + b e. About any line but one along the shift no whole turn shifts, so
+/// that is the axis; without a shift every axis will do, and -i is what the plane's logarithm has.
+template <class T>
+DualQuaternionLog<T> log_of_whole_turn(const glm::vec<3, T>& b) {
+    const T length = glm::length(b);
+    const auto axis = length > T(0) ? b / length : glm::vec<3, T>(T(-1), T(0), T(0));
+    return {axis * std::numbers::pi_v<T>, axis * -length};
+}
+
+/// The inverse of exp for a unit, with |r| in [0, pi]; every unit has a logarithm. Near a whole turn (q0 near
+/// -1) that also shifts across its axis, the axis is far away: d grows without bound as 1 / |vector of q0|,
+/// and its rounding with it.
 template <class T>
 DualQuaternionLog<T> log(const DualQuaternion<T>& q) {
     using std::atan2, std::sqrt;
     const auto a = vector_part(q.q0), b = vector_part(q.qe);
-    const T h = atan2(sqrt(glm::dot(a, a)), q.q0.w);
-    const T by_sinc = T(1) / sinc(h);
-    const T along = -q.qe.w * by_sinc;  // r . d
+    const T w = q.q0.w, s = sqrt(glm::dot(a, a));  // cos h, sin h
+    if (w < T(0) && s <= std::numeric_limits<T>::epsilon()) return log_of_whole_turn(b);
+    const T h = atan2(s, w);
+    const T by_sinc = w < T(0) ? h / s : T(1) / sinc(h);  // near h = pi, s is exact and sin(h) is not
+    // r . d: a . b = sinc(h) cos(h) (r . d) knows it where sin(h) is small, qe.w = -sinc(h) (r . d)
+    // elsewhere.
+    const T along = (w * glm::dot(a, b) - s * s * q.qe.w) * by_sinc;
     const auto r = a * by_sinc;
     return {r, (b - r * (sinc_slope(h) * along)) * by_sinc};
 }
@@ -201,8 +217,8 @@ struct Screw {
     glm::vec<3, T> moment{0};      ///< c x axis for any point c of the axis; at right angles to it
 };
 
-/// Of a unit. A pure shift turns by 0 about the line through the origin along it; what moves nothing has the
-/// z axis.
+/// Of a unit: q and -q turn by angles that add up to 2 pi, about opposite axes. A pure shift turns by 0 about
+/// the line through the origin along it; 1, which moves nothing, has the z axis.
 template <class T>
 Screw<T> screw(const DualQuaternion<T>& q) {
     const DualQuaternionLog<T> x = log(q);

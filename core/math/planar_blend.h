@@ -1,5 +1,6 @@
 // Blends of the plane's motions that know how far each was turned: one function a method. Each gives the map
-// v -> a v + b of one vertex from its weights; a probe with all the weight gives its own motion exactly.
+// v -> a v + b of one vertex from its weights. Where no probe moved it is the identity, bit for bit; a probe
+// with all the weight gives its own motion (moving least squares: only its shift).
 //
 // In every function: weights, motions: #probes each, at least one; weights >= 0, not all zero, need not sum
 // to
@@ -11,7 +12,6 @@
 #include <complex>
 #include <cstddef>
 #include <span>
-#include <tuple>
 
 #include "math/blend.h"
 #include "math/motion.h"
@@ -59,20 +59,11 @@ template <class W, class T>
 Similarity<T> planar_dlb_shortest(std::span<const W> weights, std::span<const Motion<T>> motions) {
     const auto turn = mean(weights, motions, [](const auto& m) { return m.p.p0 * m.p.p0; });
     const T known = std::abs(turn);
-    std::complex<T> centre = std::sqrt(turn / known);
-    if (!(known >= cancelled_share<T>)) {
-        // As pivot_of_equals: the heaviest, of equals the one that turns least, then the clockwise one.
-        const auto rank = [&](std::size_t i) {
-            return std::tuple(weights[i], motions[i].less_one.real(), motions[i].less_one.imag());
-        };
-        std::size_t best = 0;
-        for (std::size_t i = 1; i < motions.size(); ++i)
-            if (rank(i) > rank(best)) best = i;
-        centre = motions[best].p.p0;
-    }
-    const auto sign = [&](const auto& m) {
-        return (m.p.p0 * std::conj(centre)).real() < T(0) ? T(-1) : T(1);
-    };
+    const DualComplex<T> centre =
+        known >= cancelled_share<T>
+            ? DualComplex<T>{std::sqrt(turn / known), std::complex<T>(0)}
+            : motions[pivot_of_equals(weights, [&](std::size_t i) { return motions[i].p; })].p;
+    const auto sign = [&](const auto& m) { return sign_towards(centre, m.p); };
     const auto s0 = mean(weights, motions, [&](const auto& m) { return sign(m) * m.p.p0; });
     if (!(std::abs(s0) >= cancelled_share<T>)) return follow_heaviest(weights, motions);
     return normalised_action<T>(
@@ -164,16 +155,21 @@ struct LeastSquares {
 
 template <class W, class T>
 LeastSquares<T> least_squares(std::span<const W> weights, std::span<const Motion<T>> motions) {
+    // Seen from the heaviest: where points coincide, or where it has all the weight, the spreads are exactly
+    // 0 and not the rounding of a mean.
+    const Motion<T>& m = motions[heaviest(weights)];
+    const auto rest = [&](const auto& x) { return x.rest - m.rest; };
+    const auto now = [&](const auto& x) { return x.now - m.now; };
+    const auto way = [&](const auto& x) { return (x.now - x.rest) - (m.now - m.rest); };
+    const std::complex<T> p = mean(weights, motions, rest), q = mean(weights, motions, now),
+                          q_less_p = mean(weights, motions, way);
     LeastSquares<T> s;
-    s.rest = mean(weights, motions, [](const auto& x) { return x.rest; });
-    s.way = mean(weights, motions, [](const auto& x) { return x.now - x.rest; });
-    const auto from_rest = [&](const auto& x) { return x.rest - s.rest; };
-    const auto from_way = [&](const auto& x) { return (x.now - x.rest) - s.way; };
-    s.spread = mean(weights, motions, [&](const auto& x) { return std::norm(from_rest(x)); });
-    s.spread_now =
-        mean(weights, motions, [&](const auto& x) { return std::norm(from_rest(x) + from_way(x)); });
+    s.rest = m.rest + p;
+    s.way = (m.now - m.rest) + q_less_p;
+    s.spread = mean(weights, motions, [&](const auto& x) { return std::norm(rest(x) - p); });
+    s.spread_now = mean(weights, motions, [&](const auto& x) { return std::norm(now(x) - q); });
     s.way_spread =
-        mean(weights, motions, [&](const auto& x) { return from_way(x) * std::conj(from_rest(x)); });
+        mean(weights, motions, [&](const auto& x) { return (way(x) - q_less_p) * std::conj(rest(x) - p); });
     return s;
 }
 
@@ -193,8 +189,9 @@ Similarity<T> mls_similarity(std::span<const W> weights, std::span<const Motion<
     return about_centres(s, s.way_spread / s.spread);
 }
 
-/// Moving least squares with rigid motions (Schaefer et al., equation 8): the same without its scale. No
-/// answer where the points now lie so that no rotation is better than another.
+/// Moving least squares with rigid motions (Schaefer et al., equation 8): the same without its scale. Where
+/// all points with weight coincide, at rest or now, it translates; no answer where they lie otherwise so that
+/// no rotation is better than another.
 template <class W, class T>
 Similarity<T> mls_rigid(std::span<const W> weights, std::span<const Motion<T>> motions) {
     const LeastSquares<T> s = least_squares(weights, motions);

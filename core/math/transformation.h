@@ -16,10 +16,10 @@ concept RigidTransformation = requires(const P p, const P q, const typename P::S
     { act(p, v) } -> std::same_as<typename P::Point>;  // of a unit
     { exp(x) } -> std::same_as<P>;                     // a unit
     { log(p) } -> std::same_as<typename P::Log>;       // of a unit
-    { p + q } -> std::same_as<P>;                      //
-    { -p } -> std::same_as<P>;                         //
-    { t* p } -> std::same_as<P>;                       //
-    { normalised(p) } -> std::same_as<P>;              // requires a part that turns other than 0
+    { p + q } -> std::same_as<P>;
+    { -p } -> std::same_as<P>;
+    { t* p } -> std::same_as<P>;
+    { normalised(p) } -> std::same_as<P>;  // requires a part that turns other than 0
     { rotation_dot(p, q) } -> std::same_as<typename P::Scalar>;
     { x + x } -> std::same_as<typename P::Log>;
     { t* x } -> std::same_as<typename P::Log>;

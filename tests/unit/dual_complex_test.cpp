@@ -1,5 +1,5 @@
-// The laws of anti-commutative dual complex numbers (MKO, arXiv 1601.01754), over float and double, and its
-// examples against numbers worked by hand.
+// What is anti-commutative dual complex numbers' own (MKO, arXiv 1601.01754), over float and double, and its
+// examples against numbers worked by hand. The laws they share with space are in transformation_test.cpp.
 #include "math/dual_complex.h"
 
 #include <array>
@@ -35,53 +35,6 @@ struct DualComplexTest : ::testing::Test {
 
 using Scalars = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(DualComplexTest, Scalars);
-
-TYPED_TEST(DualComplexTest, IsAssociative) {
-    expect_always("(pq)r = p(qr)", [] {
-        const auto p = TestFixture::any(), q = TestFixture::any(), r = TestFixture::any();
-        RC_ASSERT(TestFixture::near((p * q) * r, p * (q * r)));
-    });
-}
-
-TYPED_TEST(DualComplexTest, IsDistributive) {
-    expect_always("p(q + r) = pq + pr, (p + q)r = pr + qr", [] {
-        const auto p = TestFixture::any(), q = TestFixture::any(), r = TestFixture::any();
-        RC_ASSERT(TestFixture::near(p * (q + r), p * q + p * r));
-        RC_ASSERT(TestFixture::near((p + q) * r, p * r + q * r));
-    });
-}
-
-TYPED_TEST(DualComplexTest, ProductActsAsOneAfterTheOther) {
-    expect_always("(pq) <> v = p <> (q <> v)", [] {
-        const auto p = TestFixture::any(), q = TestFixture::any();
-        const auto v = TestFixture::any_point();
-        RC_ASSERT(std::abs(act(p * q, v) - act(p, act(q, v))) <= TestFixture::rounding);
-    });
-}
-
-TYPED_TEST(DualComplexTest, OppositesActAlike) {
-    expect_always("-p <> v = p <> v", [] {
-        const auto p = TestFixture::any();
-        const auto v = TestFixture::any_point();
-        RC_ASSERT(act(-p, v) == act(p, v));  // exactly: rounding does not know the sign
-    });
-}
-
-TYPED_TEST(DualComplexTest, InverseUndoes) {
-    expect_always("p p^-1 = p^-1 p = 1", [] {
-        const auto p = TestFixture::any();
-        RC_ASSERT(TestFixture::near(p * inverse(p), {}));
-        RC_ASSERT(TestFixture::near(inverse(p) * p, {}));
-    });
-}
-
-TYPED_TEST(DualComplexTest, KeepsDistances) {
-    expect_always("|p <> u - p <> v| = |u - v|", [] {
-        const auto p = TestFixture::any();
-        const auto u = TestFixture::any_point(), v = TestFixture::any_point();
-        RC_ASSERT(std::abs(std::abs(act(p, u) - act(p, v)) - std::abs(u - v)) <= TestFixture::rounding);
-    });
-}
 
 /// A rigid transformation as the matrix of homogeneous coordinates, in double: the turn by t about c, then
 /// the shift by d.
@@ -160,56 +113,6 @@ TYPED_TEST(DualComplexTest, ExpOfLogAtExactlyHalfATurnOfTheHalfAngle) {
         EXPECT_EQ(log(p).h, -std::numbers::pi_v<T>);
         EXPECT_TRUE(this->near(exp(log(p)), p, 16 * this->epsilon));
     }
-}
-
-TYPED_TEST(DualComplexTest, LogOfExpIsTheSameInsideTheBranch) {
-    expect_always("log(exp x) = x", [] {
-        using T = TypeParam;
-        const DualComplexLog<T> x{T(*real(-3, 3)), TestFixture::any_point()};
-        const auto y = log(exp(x));
-        RC_ASSERT(std::abs(y.h - x.h) <= 8 * TestFixture::epsilon);  // roundings of numbers up to pi
-        // At |h| = 3, sinc is 0.047: an error of 2 epsilon in h changes it by a 40th of that relatively more.
-        RC_ASSERT(std::abs(y.p1 - x.p1) <= 15 * 150 * TestFixture::epsilon);
-    });
-}
-
-TYPED_TEST(DualComplexTest, SincIsExactOnBothSidesOfItsThreshold) {
-    using T = TypeParam;
-    const T threshold = std::sqrt(std::sqrt(this->epsilon));
-    for (const T h : {T(0), threshold / 8, std::nextafter(threshold, T(0)), threshold,
-                      std::nextafter(threshold, T(1)), 2 * threshold, 8 * threshold, T(1), T(3)})
-        for (const T sign : {T(1), T(-1)}) {
-            const long double x = h;
-            const long double expected = x == 0 ? 1 : std::sin(x) / x;
-            // Two roundings of a number up to 1, and the Taylor polynomial's next term, h^4/120 <
-            // epsilon/120.
-            EXPECT_NEAR(double(sinc(sign * h)), double(expected), double(1.1 * this->epsilon)) << h;
-        }
-}
-
-TYPED_TEST(DualComplexTest, SlerpEndsAtBoth) {
-    expect_always("slerp(p, q; 0) = p, slerp(p, q; 1) = q", [] {
-        const auto p = TestFixture::any(), q = TestFixture::any();
-        RC_ASSERT(TestFixture::near(slerp(p, q, TypeParam(0)), p));
-        RC_ASSERT(TestFixture::near(slerp(p, q, TypeParam(1)), q));
-    });
-}
-
-TYPED_TEST(DualComplexTest, SlerpHasConstantSpeed) {
-    expect_always("from t to t + 1/8 it does the same at every t, and turns by an eighth", [] {
-        using T = TypeParam;
-        const auto p = TestFixture::any();
-        // Beyond |h| = 3 the logarithm's p1 grows without bound (a whole turn about a point at infinity).
-        const DualComplexLog<T> x{T(*real(-3, 3)), TestFixture::any_point()};
-        const auto q = exp(x) * p;
-        const auto first = slerp(p, q, T(0.125)) * inverse(p);
-        for (int k = 0; k < 8; ++k) {
-            const auto step = slerp(p, q, T(k + 1) / 8) * inverse(slerp(p, q, T(k) / 8));
-            RC_ASSERT(std::abs(std::arg(step.p0) - x.h / 8) <= TestFixture::rounding);
-            // The logarithm's p1 is at most 21 times |p1| = 15 at |h| = 3, and as much less exact.
-            RC_ASSERT(TestFixture::near(step, first, 21 * TestFixture::rounding));
-        }
-    });
 }
 
 TYPED_TEST(DualComplexTest, ProductByHand) {

@@ -5,18 +5,31 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <ostream>
+#include <type_traits>
 #include <vector>
 
 #include "math/dual_complex.h"
+#include "math/dual_quaternion.h"
 
 namespace probewarp {
 
 template <class T>
 std::ostream& operator<<(std::ostream& out, const DualComplex<T>& p) {
     return out << p.p0 << " + " << p.p1 << " e";
+}
+
+template <class T>
+std::ostream& operator<<(std::ostream& out, const DualQuaternion<T>& q) {
+    const auto write = [&](const Quaternion<T>& x) {
+        out << '(' << x.w << ", " << x.x << ", " << x.y << ", " << x.z << ')';
+    };
+    write(q.q0), out << " + ", write(q.qe);
+    return out << " e";
 }
 
 }  // namespace probewarp
@@ -67,6 +80,98 @@ rc::Gen<DualComplex<T>> unit_dcn(double size) {
     return rc::gen::map(rc::gen::pair(angle(1), point<T>(size)), [](std::pair<double, std::complex<T>> x) {
         return DualComplex<T>{std::polar(T(1), T(x.first / 2)), x.second};
     });
+}
+
+/// The laws that hold in the plane and in space run over these.
+using Transformations =
+    ::testing::Types<DualComplex<float>, DualComplex<double>, DualQuaternion<float>, DualQuaternion<double>>;
+
+template <class P>
+inline constexpr bool in_plane = std::is_same_v<typename P::Point, std::complex<typename P::Scalar>>;
+
+/// A vector of space, each coordinate within `size`; one time in three along a coordinate axis.
+template <class T>
+glm::vec<3, T> any_vector(double size) {
+    glm::vec<3, T> v(T(*real(-size, size)), T(*real(-size, size)), T(*real(-size, size)));
+    const int alone = *whole(0, 8);
+    for (int i = 0; i < 3 && alone < 3; ++i)
+        if (i != alone) v[i] = T(0);
+    return v;
+}
+
+template <class T>
+glm::vec<3, T> any_axis() {
+    const auto v = any_vector<T>(1);
+    const T length = glm::length(v);
+    return length > T(0.01) ? v / length : glm::vec<3, T>(T(0), T(0), T(1));
+}
+
+template <class P>
+typename P::Point any_point(double size) {
+    using T = typename P::Scalar;
+    if constexpr (in_plane<P>)
+        return *point<T>(size);
+    else
+        return any_vector<T>(size);
+}
+
+/// The element of the algebra with half the angle h about any axis, its other part within `size`.
+template <class P>
+typename P::Log any_log(typename P::Scalar h, double size) {
+    using T = typename P::Scalar;
+    if constexpr (in_plane<P>)
+        return {h, *point<T>(size)};
+    else
+        return {any_axis<T>() * h, any_vector<T>(size)};
+}
+
+/// A unit whose p1 or qe is at most 2 `size`, the half angle anywhere in [-pi, pi].
+template <class P>
+P any_unit(double size) {
+    using T = typename P::Scalar;
+    if constexpr (in_plane<P>)
+        return *unit_dcn<T>(size);
+    else
+        return translation(any_vector<T>(2 * size)) * rotation(T(*angle(1)), any_axis<T>());
+}
+
+template <class T>
+T difference(const std::complex<T>& a, const std::complex<T>& b) {
+    return std::abs(a - b);
+}
+
+template <class T>
+T difference(const glm::vec<3, T>& a, const glm::vec<3, T>& b) {
+    return glm::length(a - b);
+}
+
+template <class T>
+T difference(const DualComplex<T>& p, const DualComplex<T>& q) {
+    return std::max(std::abs(p.p0 - q.p0), std::abs(p.p1 - q.p1));
+}
+
+template <class T>
+T difference(const DualQuaternion<T>& p, const DualQuaternion<T>& q) {
+    return std::max(glm::length(p.q0 - q.q0), glm::length(p.qe - q.qe));
+}
+
+template <class T, std::size_t N>
+T difference(const std::array<T, N>& a, const std::array<T, N>& b) {
+    T most{};
+    for (std::size_t i = 0; i < N; ++i) most = std::max(most, std::abs(a[i] - b[i]));
+    return most;
+}
+
+/// p and -p are the same transformation.
+template <class P>
+typename P::Scalar difference_of_motions(const P& p, const P& q) {
+    return std::min(difference(p, q), difference(p, -q));
+}
+
+/// As embed of a dual complex number: i h + p1 e -> i h + p1 j e.
+template <class T>
+DualQuaternionLog<T> embed(const DualComplexLog<T>& x) {
+    return {{x.h, T(0), T(0)}, {T(0), x.p1.real(), x.p1.imag()}};
 }
 
 }  // namespace probewarp::testing
