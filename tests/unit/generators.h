@@ -135,6 +135,17 @@ P any_unit(double size) {
         return translation(any_vector<T>(2 * size)) * rotation(T(*angle(1)), any_axis<T>());
 }
 
+/// The turn about x + y i, in space in the plane that embed puts there.
+template <class P>
+P turn_in_plane(double degrees, double x = 0, double y = 0) {
+    using T = typename P::Scalar;
+    const auto p = rotation(T(degrees * std::numbers::pi / 180), std::complex<T>(T(x), T(y)));
+    if constexpr (in_plane<P>)
+        return p;
+    else
+        return embed(p);
+}
+
 template <class T>
 T difference(const std::complex<T>& a, const std::complex<T>& b) {
     return std::abs(a - b);
