@@ -84,9 +84,12 @@ Similarity<T> planar_dib(std::span<const W> weights, std::span<const Motion<T>> 
         if (weights[i] == W(0)) continue;
         const T half = (motions[i].angle - m) / T(2);
         const std::complex<T> turn = motions[i].p.p0 * back;  // e^{i half}, without working it out
-        const bool small = std::abs(half) < T(1e-3);          // the series' next term is half^4 / 45
+        // Below, the series' next term is 2 half^6 / 945; above, turn's rounding counts as epsilon / half.
+        const bool small = std::abs(half) < T(1e-2);
         if (!small && std::abs(turn.imag()) < cancelled_share<T>) return follow_heaviest(weights, motions);
-        const T cotangent = small ? T(1) - half * half / T(3) : half * turn.real() / turn.imag();
+        const T square = half * half;
+        const T cotangent =
+            small ? T(1) - square / T(3) - square * square / T(45) : half * turn.real() / turn.imag();
         const std::complex<T> a = T(weights[i]) * std::complex<T>(cotangent, -half);
         sum += a;
         shift += a * motions[i].shift;
