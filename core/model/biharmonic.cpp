@@ -79,7 +79,7 @@ void search(const WeightInput& input, const Cholesky& factor, const Eigen::Array
     Sides smooth(pulls.rows(), side_by_side);
     Sides unbalanced = Sides::Zero(pulls.rows(), side_by_side);
     for (int round = 0; round < most_rounds; ++round) {
-        go_on(input);
+        check_given_up(input);
         smooth = pulls + (bounded - unbalanced).colwise() * rho_areas;
         solve_in_factor_order(factor, smooth);
         double apart = 0, moved = 0;
@@ -142,7 +142,7 @@ BiharmonicCache& prepared(WeightCache& cache) {
 /// Takes the blocks of shares, as harmonic_start gives them, to the least energy.
 void search_all(const WeightInput& input, BiharmonicCache& cache, std::span<const Place> places, double rho,
                 std::span<Sides> shares) {
-    go_on(input);
+    check_given_up(input);
     factor(cache, rho, places);
     const Eigen::VectorXi order = cache.factor.permutationP().indices();
     Eigen::ArrayXd rho_areas(order.size());

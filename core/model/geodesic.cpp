@@ -137,7 +137,7 @@ std::vector<float> geodesic_table(const WeightInput& input) {
     const auto key = [](const Place& place) { return std::pair{place.at.x, place.at.y}; };
     std::set<std::pair<double, double>> used;
     for (const Place& place : places) {
-        go_on(input);
+        check_given_up(input);
         used.insert(key(place));
         if (!cache.distances.contains(key(place)))
             cache.distances[key(place)] = geodesic_distances(cache.shape, place);

@@ -163,7 +163,7 @@ void find_columns(const WeightInput& input, HarmonicCache& cache, const Ties& ti
     }
     for (const std::uint32_t vertex : ties.vertices) {
         if (cache.columns.contains(vertex)) continue;
-        go_on(input);
+        check_given_up(input);
         cache.columns[vertex] =
             cache.grounded->solve(Eigen::VectorXd::Unit(cache.laplacian.rows(), Eigen::Index(vertex)));
     }
@@ -209,7 +209,7 @@ void solve_by_columns(const WeightInput& input, HarmonicCache& cache, std::span<
     Eigen::MatrixXd some(step, tied);
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> shares;
     for (Eigen::Index first = 0; first < vertices; first += step) {
-        go_on(input);
+        check_given_up(input);
         const Eigen::Index rows = std::min(step, vertices - first);
         for (Eigen::Index j = 0; j < tied; ++j)
             some.col(j).head(rows) = columns[std::size_t(j)]->segment(first, rows);
@@ -254,14 +254,14 @@ void solve_directly(const WeightInput& input, HarmonicCache& cache, std::span<co
         }
     if (!cache.direct_ordered) cache.direct.analyzePattern(matrix);
     cache.direct_ordered = true;
-    go_on(input);
+    check_given_up(input);
     cache.direct.factorize(matrix);
     check_factored(cache.direct);
 
     const auto& order = cache.direct.permutationP().indices();
     Sides sides(vertices, side_by_side), shares(vertices, side_by_side);
     for (std::size_t from = 0; from < places.size(); from += side_by_side) {
-        go_on(input);
+        check_given_up(input);
         const std::size_t across = std::min<std::size_t>(side_by_side, places.size() - from);
         sides.setZero();
         for (std::size_t k = 0; k < across; ++k)

@@ -47,11 +47,11 @@ void gaussian_weights(std::span<const Probe> probes, glm::dvec2 vertex, std::spa
     }
 }
 
-namespace {
-
 void check_given_up(const WeightInput& input) {
-    if (input.given_up && *input.given_up) throw GivenUp();
+    if (input.given_up && input.given_up->load(std::memory_order_relaxed)) throw GivenUp();
 }
+
+namespace {
 
 /// A scheme that looks at one vertex at a time: at(vertex, row).
 template <class At>

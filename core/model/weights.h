@@ -57,6 +57,9 @@ struct WeightScheme {
 
 struct GivenUp {};
 
+/// Throws GivenUp where nobody wants the result any more.
+void check_given_up(const WeightInput& input);
+
 /// The schemes, the default first.
 std::span<const WeightScheme> weight_schemes();
 

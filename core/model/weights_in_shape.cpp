@@ -119,10 +119,6 @@ WeightCache& cache_for(const WeightInput& input) {
     return *input.cache;
 }
 
-void go_on(const WeightInput& input) {
-    if (input.given_up && input.given_up->load(std::memory_order_relaxed)) throw GivenUp{};
-}
-
 namespace {
 
 std::vector<std::uint32_t> followed(const WeightInput& input, const Shape& shape,

@@ -101,9 +101,6 @@ void harmonic_shares(const WeightInput& input, WeightCache& cache, std::span<con
 void write_shares(std::span<const Place> places, std::size_t probes, std::size_t vertex, std::size_t place,
                   std::span<const double> shares, std::size_t across, std::span<float> table);
 
-/// Throws GivenUp where nobody wants the result any more.
-void go_on(const WeightInput& input);
-
 /// Divides each row by its largest, then sets the rows that are known: at a probe's anchor, and on an island
 /// without a probe. A row without any weight takes the place nearest as the crow flies.
 void settle_rows(const WeightInput& input, std::span<const Place> places, std::span<float> table);
