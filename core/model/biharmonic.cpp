@@ -3,33 +3,47 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <future>
 
 #include "model/error.h"
-#include "model/shape_laplacian.h"
+#include "model/panel_factor.h"
 
 namespace probewarp {
 
-/// What depends on the shape alone.
+/// What depends on the shape and, coarsely, on how many places there are: it stays as probes move. All but
+/// `order` itself is in the order of elimination.
 struct BiharmonicCache {
-    SparseMatrix laplacian;  ///< L
-    SparseMatrix energy;     ///< L M^-1 L
-    Eigen::VectorXd areas;   ///< M, lumped
-    Cholesky factor;
-    bool ordered = false;
+    Eigen::VectorXi order;  ///< #vertices: each one's row
+    Eigen::VectorXd areas;  ///< M, lumped
+    SparseMatrix energy;    ///< L M^-1 L
+    Panels panels;
+    struct Rung {
+        double rho;
+        std::vector<float> factor;  ///< of energy + rho M
+    };
+    std::vector<Rung> rungs;  ///< empty before the first table
 };
 
 namespace {
 
-/// The factor of this many vertices takes about 1 GB.
+/// The factors of this many vertices take about 1 GB.
 constexpr std::size_t most_vertices = 330'000;
 
-/// The search ends where its two halves are this near and still, or after so many rounds. By then a share is
-/// 0.005 (root mean square) from where it would come to rest, and 0.08 at worst, near places close together.
-constexpr double stop = 1e-3;
-constexpr int most_rounds = 100;
-constexpr double over_relaxation = 1.6;
+/// The search goes up a ladder: with a small weight rho of the distance between its two halves, the shares
+/// find their place at large; with a larger one, near each place; with the last one the two halves meet.
+/// rho is in units of spacing^-4, as the energy of shares that change from place to place; the rungs are wide
+/// apart, and the figures of rho matter little.
+/// At its end a share is 0.01 (root mean square) from the least energy's, and 0.1 at worst, near places close
+/// together, and the energy is 1 to 5 per cent above the least (tests/unit/biharmonic_test.cpp).
+struct Rounds {
+    double rho;
+    int rounds;
+};
+constexpr Rounds ladder[] = {{8, 12}, {200, 10}, {10'000, 8}};
+constexpr double stiffest = 1;  // of rho; the energy's own diagonal is 20
+constexpr float over_relaxation = 1.8f;
 
 /// Of a place on its triangle's corners, by the squares of their shares; the energy's own diagonal is 20.
 /// Each corner is held by itself: bounded shares can only be 1 inside a triangle where all its corners are,
@@ -37,133 +51,140 @@ constexpr double over_relaxation = 1.6;
 /// it comes gently as a probe crosses an edge.
 double hold(double share) { return 300 * share * share; }
 
-/// The weight of the distance between the two halves of the search. It goes quickest where that is about the
-/// energy of what the shares look like: a wave with the harmonic shares' mean square slope. 0 where they have
-/// none, each place being alone on its island (its shares are 1 from the start).
-double balance(const BiharmonicCache& cache, std::span<const Sides> harmonic) {
-    double slopes = 0, squares = 0;
-    for (const Sides& shares : harmonic) {
-        const Eigen::ArrayXd by_place =
-            (shares * (cache.laplacian * shares.matrix()).array()).colwise().sum().transpose();
-        for (Eigen::Index k = 0; k < side_by_side; ++k) {
-            if (by_place[k] < 1e-9) continue;  // rounding: the place is alone
-            slopes += by_place[k];
-            squares += (shares.col(k).square() * cache.areas.array()).sum();
-        }
-    }
-    const double wave_number_squared = squares > 0 ? slopes / squares : 0;  // cells^-2
-    return 20 * wave_number_squared * wave_number_squared;
-}
-
-/// Factors energy + rho M + the places' holds.
-void factor(BiharmonicCache& cache, double rho, std::span<const Place> places) {
-    SparseMatrix matrix = cache.energy;
-    for (Eigen::Index v = 0; v < matrix.rows(); ++v) matrix.coeffRef(v, v) += rho * cache.areas[v];
-    for (const Place& place : places)
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto corner = Eigen::Index(place.corners[i]);
-            matrix.coeffRef(corner, corner) += hold(place.share[i]);
-        }
-    if (!cache.ordered) cache.factor.analyzePattern(matrix);
-    cache.ordered = true;
-    cache.factor.factorize(matrix);
-    check_factored(cache.factor);
-}
-
-/// Minimises 1/2 w^T (energy + holds) w - w^T pulls within 0 <= w <= 1 for several w at once, by the
-/// alternating direction method of multipliers (Boyd et al. 2011, section 5.2, over-relaxed). `smooth` goes
-/// for the least energy and `bounded` keeps to the bounds; `unbalanced` adds up by how much they disagreed.
-/// All in the factor's order. bounded: from where to where the search goes.
-void search(const WeightInput& input, const Cholesky& factor, const Eigen::ArrayXd& rho_areas,
-            const Sides& pulls, Sides& bounded) {
-    Sides smooth(pulls.rows(), side_by_side);
-    Sides unbalanced = Sides::Zero(pulls.rows(), side_by_side);
-    for (int round = 0; round < most_rounds; ++round) {
-        check_given_up(input);
-        smooth = pulls + (bounded - unbalanced).colwise() * rho_areas;
-        solve_in_factor_order(factor, smooth);
-        double apart = 0, moved = 0;
-        for (Eigen::Index v = 0; v < smooth.rows(); ++v) {
-            using Row = Eigen::Array<double, 1, side_by_side>;
-            const Row before = bounded.row(v);
-            const Row ahead = over_relaxation * smooth.row(v) + (1 - over_relaxation) * before;
-            const Row now = (ahead + unbalanced.row(v)).max(0.0).min(1.0);
-            apart = std::max(apart, (smooth.row(v) - now).abs().maxCoeff());
-            moved = std::max(moved, (now - before).abs().maxCoeff());
-            unbalanced.row(v) += ahead - now;
-            bounded.row(v) = now;
-        }
-        if (apart <= stop && moved <= stop) break;
-    }
-}
-
-/// The rows of `from` in the factor's order, or back in the vertices'.
-Sides in_order(const Sides& from, const Eigen::VectorXi& order, bool back) {
-    Sides to(from.rows(), side_by_side);
-    for (Eigen::Index v = 0; v < from.rows(); ++v)
-        if (back)
-            to.row(v) = from.row(order[v]);
-        else
-            to.row(order[v]) = from.row(v);
-    return to;
-}
-
-/// Where the search starts: the harmonic shares, which keep to the bounds already. Not where the last search
-/// ended, so that a picture is the same however its probes came to where they are.
-/// #blocks of `side_by_side` places, each #vertices rows in the vertices' order.
-std::vector<Sides> harmonic_start(const WeightInput& input, WeightCache& cache,
-                                  std::span<const Place> places) {
-    std::vector<Sides> start((places.size() + side_by_side - 1) / side_by_side,
-                             Sides::Zero(Eigen::Index(cache.shape.vertices), side_by_side));
-    harmonic_shares(
-        input, cache, places, HarmonicWay::by_size,
-        [&](std::size_t vertex, std::size_t place, std::span<const double> shares, std::size_t across) {
-            for (std::size_t k = 0; k < shares.size(); ++k) {
-                const std::size_t column = place + k % across;
-                start[column / side_by_side](Eigen::Index(vertex + k / across),
-                                             Eigen::Index(column % side_by_side)) =
-                    std::clamp(shares[k], 0.0, 1.0);
-            }
-        });
-    return start;
+/// Runs work(0), ..., work(count - 1) on two threads. What is thrown comes through from either.
+template <class Work>
+void on_two_threads(std::size_t count, Work work) {
+    std::atomic<std::size_t> next{0};
+    const auto take_turns = [&] {
+        for (std::size_t i = next++; i < count; i = next++) work(i);
+    };
+    auto other = std::async(std::launch::async, take_turns);
+    take_turns();
+    other.get();
 }
 
 BiharmonicCache& prepared(WeightCache& cache) {
     if (!cache.biharmonic) {
         auto made = std::make_shared<BiharmonicCache>();
-        made->areas = lumped_areas(cache.shape);
-        made->laplacian = laplacian(cache.shape);
-        made->energy = made->laplacian * made->areas.cwiseInverse().asDiagonal() * made->laplacian;
+        const Eigen::VectorXd areas = lumped_areas(cache.shape);
+        const SparseMatrix stiffness = laplacian(cache.shape);
+        const SparseMatrix energy = stiffness * areas.cwiseInverse().asDiagonal() * stiffness;
+        Eigen::PermutationMatrix<Eigen::Dynamic> back;
+        Eigen::AMDOrdering<int>()(energy, back);
+        const Eigen::PermutationMatrix<Eigen::Dynamic> order = back.inverse();
+        made->order = order.indices();
+        made->areas = order * areas;
+        made->energy = order * energy * back;
         cache.biharmonic = std::move(made);
     }
     return *cache.biharmonic;
 }
 
-/// Takes the blocks of shares, as harmonic_start gives them, to the least energy.
-void search_all(const WeightInput& input, BiharmonicCache& cache, std::span<const Place> places, double rho,
-                std::span<Sides> shares) {
-    check_given_up(input);
-    factor(cache, rho, places);
-    const Eigen::VectorXi order = cache.factor.permutationP().indices();
-    Eigen::ArrayXd rho_areas(order.size());
-    for (Eigen::Index v = 0; v < order.size(); ++v) rho_areas[order[v]] = rho * cache.areas[v];
-    const auto search_every_other = [&](std::size_t from) {
-        for (std::size_t block = from; block < shares.size(); block += 2) {
-            Sides pulls = Sides::Zero(order.size(), side_by_side);
-            const std::size_t first = block * side_by_side;
-            for (std::size_t p = first; p < std::min(first + side_by_side, places.size()); ++p)
-                for (std::size_t i = 0; i < 3; ++i)
-                    pulls(order[Eigen::Index(places[p].corners[i])], Eigen::Index(p - first)) +=
-                        hold(places[p].share[i]);
-            Sides here = in_order(shares[block], order, false);
-            search(input, cache.factor, rho_areas, pulls, here);
-            shares[block] = in_order(here, order, true);
+/// Cells between one place and the next, spread over the shape or strung along it, whichever is more: it is
+/// a strip as long as half its outline, which is what it has more vertices than cells. As a power of 2, so
+/// that one more probe seldom needs other factors.
+double spacing(const BiharmonicCache& cache, std::size_t places) {
+    const double cells = cache.areas.sum(), along = double(cache.areas.size()) - cells;
+    const double cells_between = std::max(std::sqrt(cells / double(places)), along / double(places));
+    return std::exp2(std::round(std::log2(cells_between)));
+}
+
+/// Makes the rungs for so many places, where they are not there already.
+void factor_rungs(const WeightInput& input, BiharmonicCache& cache, std::size_t places) {
+    const double unit = std::pow(spacing(cache, places), -4);
+    std::vector<BiharmonicCache::Rung> rungs;
+    for (const Rounds& rung : ladder) rungs.push_back({std::min(rung.rho * unit, stiffest), {}});
+    const auto same = [](const auto& a, const auto& b) { return a.rho == b.rho; };
+    if (std::equal(rungs.begin(), rungs.end(), cache.rungs.begin(), cache.rungs.end(), same)) return;
+    Panels panels;
+    on_two_threads(rungs.size(), [&](std::size_t i) {
+        check_given_up(input);
+        SparseMatrix matrix = cache.energy;
+        matrix.diagonal() += rungs[i].rho * cache.areas;
+        const Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>> factor(matrix);
+        check_factored(factor.info());
+        const SparseMatrix& lower = factor.matrixL().nestedExpression();
+        if (i == 0) panels = panels_of(lower);
+        rungs[i].factor = panel_values(i == 0 ? panels : panels_of(lower), lower);
+    });
+    cache.panels = std::move(panels);
+    cache.rungs = std::move(rungs);
+}
+
+/// #rungs: the kept factors with the places' holds added. From the kept ones each time, not from the last
+/// table's: so a table is the same, bit for bit, however its probes came to where they are.
+std::vector<std::vector<float>> held_factors(const WeightInput& input, const BiharmonicCache& cache,
+                                             std::span<const Place> places) {
+    std::vector<std::vector<float>> factors(cache.rungs.size());
+    on_two_threads(factors.size(), [&](std::size_t i) {
+        factors[i] = cache.rungs[i].factor;
+        DiagonalRaiser raiser(cache.panels);
+        for (const Place& place : places) {
+            check_given_up(input);
+            std::array<Raise, 3> raises;
+            for (std::size_t k = 0; k < 3; ++k)
+                raises[k] = {cache.order[Eigen::Index(place.corners[k])], float(hold(place.share[k]))};
+            raiser.raise(raises, factors[i]);
         }
-    };
-    // The blocks have nothing to do with each other. GivenUp comes through from either thread.
-    auto others = std::async(std::launch::async, search_every_other, 1);
-    search_every_other(0);
-    others.get();
+    });
+    return factors;
+}
+
+/// A place's hold in the column of its own shares.
+struct Pull {
+    Eigen::Index row, column;
+    float by;
+};
+
+/// Minimises 1/2 w^T (energy + holds) w - w^T pulls within 0 <= w <= 1 for several w at once, by the
+/// alternating direction method of multipliers (Boyd et al. 2011, section 5.2, over-relaxed). `state`, in and
+/// out, is what has to be cut off at the bounds: cut off it is the bounded half of the search, and what is
+/// cut off is the disagreement that has added up (their scaled dual variable). All in the factor's order.
+void search(const WeightInput& input, const Panels& panels, std::span<const float> factor,
+            const Eigen::ArrayXf& rho_areas, std::span<const Pull> pulls, int rounds, FloatSides& state) {
+    FloatSides smooth(state.rows(), abreast);
+    for (int round = 0; round < rounds; ++round) {
+        check_given_up(input);
+        for (Eigen::Index v = 0; v < state.rows(); ++v)
+            smooth.row(v) = rho_areas[v] * (2 * state.row(v).max(0.0f).min(1.0f) - state.row(v));
+        for (const Pull& pull : pulls) smooth(pull.row, pull.column) += pull.by;
+        solve_by_panels(panels, factor, smooth);
+        for (Eigen::Index v = 0; v < state.rows(); ++v)
+            state.row(v) += over_relaxation * (smooth.row(v) - state.row(v).max(0.0f).min(1.0f));
+    }
+}
+
+/// The shares of `abreast` places from `first` on, or of those that are left: #vertices, in the factor's
+/// order; a place alone on its island has all from the start.
+FloatSides shares_of(const WeightInput& input, const BiharmonicCache& cache,
+                     std::span<const std::vector<float>> factors, std::span<const Place> places,
+                     std::size_t first) {
+    const std::size_t columns = std::min<std::size_t>(abreast, places.size() - first);
+    std::vector<float> start(std::size_t(input.islands.count), 0.0f);  // 1 / the island's places
+    for (const Place& place : places) ++start[std::size_t(place.island)];
+    for (float& count : start) count = 1 / count;
+    FloatSides state = FloatSides::Zero(cache.order.size(), abreast);
+    std::vector<Pull> pulls;
+    for (std::size_t k = 0; k < columns; ++k) {
+        const Place& place = places[first + k];
+        for (Eigen::Index v = 0; v < cache.order.size(); ++v)
+            if (input.islands.of[std::size_t(v)] == place.island)
+                state(cache.order[v], Eigen::Index(k)) = start[std::size_t(place.island)];
+        for (std::size_t i = 0; i < 3; ++i)
+            pulls.push_back(
+                {cache.order[Eigen::Index(place.corners[i])], Eigen::Index(k), float(hold(place.share[i]))});
+    }
+    double rho = 0;
+    for (std::size_t rung = 0; rung < factors.size(); ++rung) {
+        const double next = cache.rungs[rung].rho;
+        // The disagreement is in units of 1 / rho.
+        const FloatSides bounded = state.max(0.0f).min(1.0f);
+        state = bounded + float(rho / next) * (state - bounded);
+        rho = next;
+        const Eigen::ArrayXf rho_areas = (rho * cache.areas).cast<float>();
+        search(input, cache.panels, factors[rung], rho_areas, pulls, ladder[rung].rounds, state);
+    }
+    return state.max(0.0f).min(1.0f);
 }
 
 }  // namespace
@@ -172,23 +193,28 @@ std::vector<float> biharmonic_table(const WeightInput& input) {
     WeightCache& cache = cache_for(input);
     const Shape& shape = cache.shape;
     if (shape.vertices > most_vertices)
-        throw Error(fmt::format(
-            "biharmonic weights take at most {} vertices: choose a coarser mesh or the harmonic weights",
-            most_vertices));
+        throw Error(
+            fmt::format("biharmonic weights take at most {} vertices, and the mesh has {}: choose a "
+                        "coarser mesh or the harmonic weights",
+                        most_vertices, shape.vertices));
     const std::vector<Place> places = places_of(input, shape);
-    std::vector<Sides> shares = harmonic_start(input, cache, places);
+    check_given_up(input);
     BiharmonicCache& biharmonic = prepared(cache);
-    if (const double rho = balance(biharmonic, shares); rho > 0)
-        search_all(input, biharmonic, places, rho, shares);
+    factor_rungs(input, biharmonic, places.size());
+    const auto factors = held_factors(input, biharmonic, places);
 
-    std::vector<float> table(input.mesh.rest.size() * input.probes.size(), 0.0f);
-    for (std::size_t p = 0; p < places.size(); ++p) {
-        const auto column = shares[p / side_by_side].col(Eigen::Index(p % side_by_side));
+    const std::size_t probes = input.probes.size();
+    std::vector<float> table(input.mesh.rest.size() * probes, 0.0f);
+    on_two_threads((places.size() + abreast - 1) / abreast, [&](std::size_t block) {
+        const std::size_t first = block * abreast;
+        const FloatSides shares = shares_of(input, biharmonic, factors, places, first);
         for (std::size_t v = 0; v < shape.vertices; ++v)
-            for (const std::size_t i : places[p].probes)
-                table[v * input.probes.size() + i] =
-                    float(column[Eigen::Index(v)] / double(places[p].probes.size()));
-    }
+            for (std::size_t p = first; p < std::min(first + abreast, places.size()); ++p)
+                for (const std::size_t i : places[p].probes)
+                    table[v * probes + i] =
+                        shares(biharmonic.order[Eigen::Index(v)], Eigen::Index(p - first)) /
+                        float(places[p].probes.size());
+    });
     settle_rows(input, places, table);
     return table;
 }

@@ -159,7 +159,7 @@ void find_columns(const WeightInput& input, HarmonicCache& cache, const Ties& ti
         for (const std::uint32_t v : first_vertices(input))
             grounded.coeffRef(Eigen::Index(v), Eigen::Index(v)) += 1;
         cache.grounded.emplace(grounded);
-        check_factored(*cache.grounded);
+        check_factored(cache.grounded->info());
     }
     for (const std::uint32_t vertex : ties.vertices) {
         if (cache.columns.contains(vertex)) continue;
@@ -256,7 +256,7 @@ void solve_directly(const WeightInput& input, HarmonicCache& cache, std::span<co
     cache.direct_ordered = true;
     check_given_up(input);
     cache.direct.factorize(matrix);
-    check_factored(cache.direct);
+    check_factored(cache.direct.info());
 
     const auto& order = cache.direct.permutationP().indices();
     Sides sides(vertices, side_by_side), shares(vertices, side_by_side);

@@ -48,8 +48,8 @@ Eigen::VectorXd lumped_areas(const Shape& shape) {
     return areas;
 }
 
-void check_factored(const Cholesky& factor) {
-    if (factor.info() != Eigen::Success)
+void check_factored(Eigen::ComputationInfo info) {
+    if (info != Eigen::Success)
         throw Error(
             "the weights cannot be worked out on this mesh; choose another scheme or another density");
 }

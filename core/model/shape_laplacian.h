@@ -20,8 +20,8 @@ SparseMatrix laplacian(const Shape& shape);
 /// #grid vertices: a quarter of the kept cells around each; in cells, not pixels.
 Eigen::VectorXd lumped_areas(const Shape& shape);
 
-/// Throws Error where the matrix could not be factored.
-void check_factored(const Cholesky& factor);
+/// Throws Error where a matrix could not be factored.
+void check_factored(Eigen::ComputationInfo info);
 
 /// Right-hand sides that are solved together: a row holds one vertex's.
 inline constexpr int side_by_side = 8;

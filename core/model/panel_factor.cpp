@@ -1,0 +1,200 @@
+#include "model/panel_factor.h"
+
+#include <cmath>
+#include <set>
+
+namespace probewarp {
+
+namespace {
+
+/// Of a panel, in the factor's values.
+const float* own_rows(const Panels::Panel& panel, std::span<const float> values) {
+    return values.data() + panel.values;
+}
+const float* rows_below(const Panels::Panel& panel, std::span<const float> values) {
+    return own_rows(panel, values) + std::size_t(panel.columns) * std::size_t(panel.columns);
+}
+
+}  // namespace
+
+Panels panels_of(const SparseMatrix& lower) {
+    const int* starts = lower.outerIndexPtr();
+    const int* rows = lower.innerIndexPtr();
+    const int columns = int(lower.cols());
+    Panels panels;
+    panels.panel_of.resize(std::size_t(columns));
+    const auto continues = [&](int column) {  // the panel of the column before
+        const int before = starts[column - 1], entries = starts[column] - before;
+        return entries >= 2 && rows[before + 1] == column &&
+               starts[column + 1] - starts[column] == entries - 1;
+    };
+    for (int first = 0, end; first < columns; first = end) {
+        for (end = first + 1; end < columns && continues(end);) ++end;
+        const int below = starts[end - 1] + 1;
+        Panels::Panel panel{first, end - first, panels.rows.size(), starts[end] - below, panels.value_count};
+        panels.rows.insert(panels.rows.end(), rows + below, rows + starts[end]);
+        panels.value_count += panel.value_count();
+        for (int column = first; column < end; ++column)
+            panels.panel_of[std::size_t(column)] = int(panels.panels.size());
+        panels.panels.push_back(panel);
+    }
+    return panels;
+}
+
+std::vector<float> panel_values(const Panels& panels, const SparseMatrix& lower) {
+    std::vector<float> values(panels.value_count, 0.0f);
+    for (const Panels::Panel& panel : panels.panels)
+        for (int column = 0; column < panel.columns; ++column) {
+            const double* from = lower.valuePtr() + lower.outerIndexPtr()[panel.first + column];
+            const auto value = [&](int row) -> float& {
+                return values[panel.values + std::size_t(row) * std::size_t(panel.columns) +
+                              std::size_t(column)];
+            };
+            value(column) = float(1 / *from);
+            for (int row = column + 1; row < panel.columns + panel.rows_below; ++row)
+                value(row) = float(*++from);
+        }
+    return values;
+}
+
+DiagonalRaiser::DiagonalRaiser(const Panels& panels)
+    : panels_(panels), update_(panels.panel_of.size(), std::array<float, 3>{}) {}
+
+namespace {
+
+/// The rotations that take three updates' columns into one of the factor's.
+struct Turn {
+    std::array<float, 3> cosine, tangent, inverse;
+};
+
+/// Makes a column's turns from its diagonal, which stands inverted and is turned too, and what the updates
+/// have there.
+Turn turn_diagonal(float& inverted, const std::array<float, 3>& update) {
+    Turn turn;
+    for (std::size_t k = 0; k < 3; ++k) {
+        turn.tangent[k] = update[k] * inverted;
+        turn.inverse[k] = std::sqrt(1 + turn.tangent[k] * turn.tangent[k]);
+        turn.cosine[k] = 1 / turn.inverse[k];
+        inverted *= turn.cosine[k];
+    }
+    return turn;
+}
+
+/// Turns the entries of `count` rows, `stride` apart, in the columns that have turns; rows: the updates'
+/// rows. Several rows at once, for each is one long chain of operations.
+template <int count>
+void turn_rows(std::span<const Turn> turns, float* entries, std::size_t stride,
+               const std::array<std::array<float, 3>*, std::size_t(count)>& rows) {
+    using Several = Eigen::Array<float, count, 1>;
+    std::array<Several, 3> update;
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < count; ++i) update[k][Eigen::Index(i)] = (*rows[i])[k];
+    for (std::size_t j = 0; j < turns.size(); ++j) {
+        const Turn& turn = turns[j];
+        Several entry;
+        for (std::size_t i = 0; i < count; ++i) entry[Eigen::Index(i)] = entries[i * stride + j];
+        for (std::size_t k = 0; k < 3; ++k) {
+            entry = (entry + turn.tangent[k] * update[k]) * turn.cosine[k];
+            update[k] = update[k] * turn.inverse[k] - turn.tangent[k] * entry;
+        }
+        for (std::size_t i = 0; i < count; ++i) entries[i * stride + j] = entry[Eigen::Index(i)];
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < count; ++i) (*rows[i])[k] = update[k][Eigen::Index(i)];
+}
+
+}  // namespace
+
+void DiagonalRaiser::raise(const std::array<Raise, 3>& raises, std::span<float> values) {
+    std::set<int> reached;  // panels; each passes what is left on to the one of its first row below
+    for (std::size_t k = 0; k < raises.size(); ++k) {
+        if (raises[k].by == 0) continue;
+        update_[std::size_t(raises[k].at)][k] = std::sqrt(raises[k].by);
+        reached.insert(panels_.panel_of[std::size_t(raises[k].at)]);
+    }
+    while (!reached.empty()) {
+        const Panels::Panel& panel = panels_.panels[std::size_t(*reached.begin())];
+        reached.erase(reached.begin());
+        raise_panel(panel, values);
+        if (panel.rows_below > 0) reached.insert(panels_.panel_of[std::size_t(panels_.rows[panel.below])]);
+    }
+}
+
+void DiagonalRaiser::raise_panel(const Panels::Panel& panel, std::span<float> values) {
+    const auto stride = std::size_t(panel.columns);
+    std::vector<Turn> turns;
+    float* entries = values.data() + panel.values;
+    for (std::size_t j = 0; j < stride; ++j, entries += stride) {
+        auto& update = update_[std::size_t(panel.first) + j];
+        turn_rows<1>(turns, entries, stride, {&update});
+        turns.push_back(turn_diagonal(entries[j], update));
+        update = {};
+    }
+    const auto update = [&](int i) {
+        return &update_[std::size_t(panels_.rows[panel.below + std::size_t(i)])];
+    };
+    int i = 0;
+    for (; i + 4 <= panel.rows_below; i += 4, entries += 4 * stride)
+        turn_rows<4>(turns, entries, stride, {update(i), update(i + 1), update(i + 2), update(i + 3)});
+    for (; i < panel.rows_below; ++i, entries += stride) turn_rows<1>(turns, entries, stride, {update(i)});
+}
+
+namespace {
+
+using Row = Eigen::Array<float, 1, abreast>;
+
+/// L x = sides, for the panel's columns and what they take from the rows below.
+void forward(const Panels& panels, const Panels::Panel& panel, std::span<const float> values,
+             FloatSides& sides) {
+    const float* entries = own_rows(panel, values);
+    for (int j = 0; j < panel.columns; ++j, entries += panel.columns) {
+        Row x = sides.row(panel.first + j);
+        for (int k = 0; k < j; ++k) x -= entries[k] * sides.row(panel.first + k);
+        sides.row(panel.first + j) = x * entries[j];
+    }
+    for (int i = 0; i < panel.rows_below; ++i, entries += panel.columns) {
+        const int row = panels.rows[panel.below + std::size_t(i)];
+        Row x = sides.row(row);
+        for (int k = 0; k < panel.columns; ++k) x -= entries[k] * sides.row(panel.first + k);
+        sides.row(row) = x;
+    }
+}
+
+/// Takes what the rows below have from `count` columns at once, so that each of these rows is read once.
+template <int count>
+void take_below(const Panels& panels, const Panels::Panel& panel, std::span<const float> values, int column,
+                FloatSides& sides) {
+    std::array<Row, count> x;
+    for (int k = 0; k < count; ++k) x[std::size_t(k)] = sides.row(panel.first + column + k);
+    const float* entries = rows_below(panel, values) + column;
+    for (int i = 0; i < panel.rows_below; ++i, entries += panel.columns) {
+        const Row y = sides.row(panels.rows[panel.below + std::size_t(i)]);
+        for (int k = 0; k < count; ++k) x[std::size_t(k)] -= entries[k] * y;
+    }
+    for (int k = 0; k < count; ++k) sides.row(panel.first + column + k) = x[std::size_t(k)];
+}
+
+/// L^T x = sides, for the panel's columns.
+void backward(const Panels& panels, const Panels::Panel& panel, std::span<const float> values,
+              FloatSides& sides) {
+    int column = 0;
+    for (; column + 4 <= panel.columns; column += 4) take_below<4>(panels, panel, values, column, sides);
+    for (; column < panel.columns; ++column) take_below<1>(panels, panel, values, column, sides);
+    const float* own = own_rows(panel, values);
+    for (int j = panel.columns; j-- > 0;) {
+        Row x = sides.row(panel.first + j);
+        for (int k = j + 1; k < panel.columns; ++k)
+            x -= own[k * panel.columns + j] * sides.row(panel.first + k);
+        sides.row(panel.first + j) = x * own[j * panel.columns + j];
+    }
+}
+
+}  // namespace
+
+void solve_by_panels(const Panels& panels, std::span<const float> values, FloatSides& sides) {
+    for (const Panels::Panel& panel : panels.panels) forward(panels, panel, values, sides);
+    for (auto panel = panels.panels.rbegin(); panel != panels.panels.rend(); ++panel)
+        backward(panels, *panel, values, sides);
+}
+
+}  // namespace probewarp
