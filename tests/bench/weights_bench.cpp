@@ -108,15 +108,15 @@ void first_dab(benchmark::State& state) {
 }
 BENCHMARK(first_dab)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
 
-void first_binding(benchmark::State& state, const char* scheme) {
-    Document document = document_with(2048, 2048, 100, 20, 0);
+void first_binding(benchmark::State& state, const char* scheme, int cells) {
+    Document document = document_with(2048, 2048, cells, 20, 0);
     document.weights.scheme = scheme;
     for (auto _ : state) benchmark::DoNotOptimize(make_binding(document, nullptr));
 }
 
 /// The table where one probe's rest has moved: what a scheme kept from before is used again.
-void binding_after_a_probe_moved(benchmark::State& state, const char* scheme) {
-    Document document = document_with(2048, 2048, 100, 20, 0);
+void binding_after_a_probe_moved(benchmark::State& state, const char* scheme, int cells) {
+    Document document = document_with(2048, 2048, cells, 20, 0);
     document.weights.scheme = scheme;
     auto binding = make_binding(document, nullptr);
     int turn = 0;
@@ -128,14 +128,18 @@ void binding_after_a_probe_moved(benchmark::State& state, const char* scheme) {
 }
 
 const bool registered = [] {
-    for (const WeightScheme& scheme : weight_schemes()) {
-        const std::string name(scheme.name);
-        benchmark::RegisterBenchmark(("first_binding/" + name).c_str(), first_binding, scheme.name.data())
-            ->Unit(benchmark::kMillisecond);
-        benchmark::RegisterBenchmark(("binding_after_a_probe_moved/" + name).c_str(),
-                                     binding_after_a_probe_moved, scheme.name.data())
-            ->Unit(benchmark::kMillisecond);
-    }
+    const auto add = [](const std::string& name, auto run, const char* scheme, int cells) {
+        benchmark::RegisterBenchmark(name.c_str(), run, scheme, cells)
+            ->Unit(benchmark::kMillisecond)
+            ->UseRealTime();  // some work on two threads
+    };
+    for (const WeightScheme& scheme : weight_schemes())
+        for (const int cells : {100, 300}) {
+            const std::string name = std::string(scheme.name) + "/" + std::to_string(cells);
+            add("first_binding/" + name, first_binding, scheme.name.data(), cells);
+            add("binding_after_a_probe_moved/" + name, binding_after_a_probe_moved, scheme.name.data(),
+                cells);
+        }
     return true;
 }();
 

@@ -96,7 +96,8 @@ struct Problem {
 TEST(Biharmonic, ComesNearTheLeastEnergy) {
     auto limbs = whole_grid(30, 30);
     for (int row = 8; row < 30; ++row) limbs[std::size_t(row)][14] = '.';
-    const std::vector<glm::dvec2> rests{{31, 42}, {152, 20}, {255, 51}, {102, 188}, {213, 150}, {88, 275}};
+    const std::vector<glm::dvec2> rests{{31, 42},  {152, 20}, {255, 51},  {102, 188}, {213, 150},
+                                        {88, 275}, {45, 60},  {240, 240}, {225, 262}, {190, 60}};
     for (const auto& cells : {whole_grid(30, 30), limbs}) {
         Scene scene(cells, rests);
         const Problem problem(scene);
@@ -108,20 +109,22 @@ TEST(Biharmonic, ComesNearTheLeastEnergy) {
                 shares(v, p) = share(table, rests.size(), std::size_t(v), std::size_t(p));
             rest.row(v) /= rest.row(v).sum();
         }
-        // What the ladder is measured to reach (see there), with some room.
-        EXPECT_LT(std::sqrt((shares - rest).squaredNorm() / double(rest.size())), 0.015);
-        EXPECT_LT((shares - rest).cwiseAbs().maxCoeff(), 0.1);
-        EXPECT_LT(problem(shares), 1.1 * problem(rest));
+        // Half as much again as is measured: 0.003, 0.022 and 0.8 per cent. A tenth of the rounds: three
+        // times that.
+        EXPECT_LT(std::sqrt((shares - rest).squaredNorm() / double(rest.size())), 0.005);
+        EXPECT_LT((shares - rest).cwiseAbs().maxCoeff(), 0.035);
+        EXPECT_LT(problem(shares), 1.013 * problem(rest));
     }
 }
 
 TEST(Biharmonic, IsTheSameBitForBitHoweverTheProbesCame) {
-    std::vector<glm::dvec2> rests{{31, 42}, {152, 20}, {155, 151}};
+    std::vector<glm::dvec2> rests{{31, 42}, {102, 20}, {105, 101}};
     std::shared_ptr<WeightCache> kept;
-    // There, on a vertex, onto another probe (two places instead of three: other factors), and back.
-    for (const glm::dvec2 rest : {glm::dvec2{31, 42}, {77, 93}, {80, 90}, {152, 20}, {33, 44}, {31, 42}}) {
+    // There, on a vertex, onto another probe (two places instead of three, so that other factors are made),
+    // and back.
+    for (const glm::dvec2 rest : {glm::dvec2{31, 42}, {77, 93}, {80, 90}, {102, 20}, {33, 44}, {31, 42}}) {
         rests[0] = rest;
-        Scene moved(whole_grid(18, 18), rests), anew(whole_grid(18, 18), rests);
+        Scene moved(whole_grid(12, 12), rests), anew(whole_grid(12, 12), rests);
         moved.cache = kept;
         EXPECT_EQ(biharmonic_table(moved.input()), biharmonic_table(anew.input()))
             << rest.x << ", " << rest.y;
