@@ -137,9 +137,9 @@ P any_unit(double size) {
 
 /// The turn about x + y i, in space in the plane that embed puts there.
 template <class P>
-P turn_in_plane(double degrees, double x = 0, double y = 0) {
+P turn_in_plane(double turn_degrees, double x = 0, double y = 0) {
     using T = typename P::Scalar;
-    const auto p = rotation(T(degrees * std::numbers::pi / 180), std::complex<T>(T(x), T(y)));
+    const auto p = rotation(T(turn_degrees * std::numbers::pi / 180), std::complex<T>(T(x), T(y)));
     if constexpr (in_plane<P>)
         return p;
     else
