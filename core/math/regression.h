@@ -8,7 +8,7 @@
 // (or y y_ref^-1: no method tells them apart). Among the observations the reference is the identity.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -89,8 +89,8 @@ struct RankDeficient : std::invalid_argument {
     RankDeficient(Eigen::Index independent, Eigen::Index all)
         : std::invalid_argument("The observations tell only " + std::to_string(independent) + " of the " +
                                 std::to_string(all) +
-                                " features apart: take more or other observations, fewer features, or an l2 "
-                                "term above 0."),
+                                " features apart: take more or other observations, fewer features, or a "
+                                "larger l2 term."),
           rank(independent),
           feature_count(all) {}
     Eigen::Index rank, feature_count;
@@ -109,7 +109,6 @@ Eigen::MatrixX<T> regularised_inverse(const Eigen::MatrixX<T>& x, T lambda) {
         throw std::invalid_argument("The l2 term must be a finite number of at least 0.");
     if (!x.allFinite()) throw std::invalid_argument("A feature of an observation is not a finite number.");
     if (columns == 0) throw std::invalid_argument("A regression needs at least one feature.");
-    if (rows == 0) throw RankDeficient(0, columns);
 
     Eigen::MatrixX<T> augmented(rows + columns, columns);
     augmented << x, std::sqrt(lambda) * Eigen::MatrixX<T>::Identity(columns, columns);

@@ -2,6 +2,7 @@
 // squares of their design with what they refuse.
 #include <gtest/gtest.h>
 
+#include <string>
 #include <utility>
 
 #include "math/regression.h"
@@ -60,6 +61,7 @@ TYPED_TEST(RegularisedInverse, ReportsTheRank) {
     EXPECT_EQ(rank_reported<T>(matrix<T>({{1, 2}, {3, 4}})), Rank(2, 2));
     EXPECT_EQ(rank_reported<T>(matrix<T>({{1, 2}, {2, 4}, {3, 6}})), Rank(1, 2));  // one reading, doubled
     EXPECT_EQ(rank_reported<T>(matrix<T>({{1, 0}, {2, 0}})), Rank(1, 2));          // one never moved
+    EXPECT_EQ(rank_reported<T>(matrix<T>({{0, 1}, {0, 2}})), Rank(1, 2));          // or the first never
     EXPECT_EQ(rank_reported<T>(matrix<T>({{0, 0}, {0, 0}})), Rank(0, 2));          // only the reference
     EXPECT_EQ(rank_reported<T>(matrix<T>({{1, 2, 3}, {4, 5, 6}})), Rank(2, 3));    // too few observations
     EXPECT_EQ(rank_reported<T>(Eigen::MatrixX<T>(0, 3)), Rank(0, 3));              // none at all
@@ -81,6 +83,16 @@ TYPED_TEST(RegularisedInverse, CallsWhatIsWithinRoundingDependentAndNotMore) {
     EXPECT_EQ(rank(80 * std::numeric_limits<T>::epsilon()), 2);
 }
 
+TYPED_TEST(RegularisedInverse, TakesFeaturesWhoseSquaresAreNoNumbers) {
+    using T = TypeParam;
+    const T large = std::sqrt(std::numeric_limits<T>::max()) * T(8);
+    const T small = std::sqrt(std::numeric_limits<T>::min()) / T(8);
+    const auto inverse = regularised_inverse(matrix<T>({{large, 0}, {0, small}}), T(0));
+    // A dozen roundings.
+    EXPECT_NEAR(inverse(0, 0) * large, 1, 12 * std::numeric_limits<T>::epsilon());
+    EXPECT_NEAR(inverse(1, 1) * small, 1, 12 * std::numeric_limits<T>::epsilon());
+}
+
 TYPED_TEST(RegularisedInverse, TakesAnythingWithAnL2Term) {
     using T = TypeParam;
     // x = (1, 1; 1, 1), lambda = 2: (X^T X + 2)^-1 = (4, -2; -2, 4) / 12, times X^T 1/6 everywhere.
@@ -88,22 +100,36 @@ TYPED_TEST(RegularisedInverse, TakesAnythingWithAnL2Term) {
     const T sixth = T(1) / T(6);
     // A dozen roundings of numbers up to 1.
     EXPECT_LE((inverse.array() - sixth).abs().maxCoeff(), 12 * std::numeric_limits<T>::epsilon());
+    // Nothing observed: no weights.
+    EXPECT_EQ(regularised_inverse(Eigen::MatrixX<T>(0, 3), T(1)).size(), 0);
     // A feature that was never seen to change does nothing.
     const auto unseen = regularised_inverse(matrix<T>({{1, 0}, {2, 0}}), T(1));
     EXPECT_EQ(unseen(1, 0), T(0));
     EXPECT_EQ(unseen(1, 1), T(0));
 }
 
-TYPED_TEST(RegularisedInverse, RefusesWhatIsNoNumber) {
+template <class T>
+std::string refusal(const Eigen::MatrixX<T>& x, T lambda) {
+    try {
+        regularised_inverse(x, lambda);
+        return "none";
+    } catch (const std::invalid_argument& e) {
+        return e.what();
+    }
+}
+
+TYPED_TEST(RegularisedInverse, SaysWhatIsNoNumber) {
     using T = TypeParam;
     const T nan = std::numeric_limits<T>::quiet_NaN(), infinity = std::numeric_limits<T>::infinity();
     const auto good = matrix<T>({{1, 2}, {3, 4}});
+    EXPECT_EQ(refusal(good, T(0)), "none");
     for (const T lambda : {T(-1), nan, infinity})
-        EXPECT_THROW(regularised_inverse(good, lambda), std::invalid_argument) << lambda;
+        EXPECT_EQ(refusal(good, lambda), "The l2 term must be a finite number of at least 0.") << lambda;
     for (const T value : {nan, infinity, -infinity})
-        EXPECT_THROW(regularised_inverse(matrix<T>({{1, 2}, {value, 4}}), T(1)), std::invalid_argument)
+        EXPECT_EQ(refusal(matrix<T>({{1, 2}, {value, 4}}), T(1)),
+                  "A feature of an observation is not a finite number.")
             << value;
-    EXPECT_THROW(regularised_inverse(Eigen::MatrixX<T>(3, 0), T(0)), std::invalid_argument);
+    EXPECT_EQ(refusal(Eigen::MatrixX<T>(3, 0), T(0)), "A regression needs at least one feature.");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // recover, what they do not depend on, and what they refuse.
 #include "math/regression.h"
 
+#include <Eigen/Eigenvalues>
 #include <array>
 #include <numbers>
 #include <tuple>
@@ -61,6 +62,15 @@ typename P::Scalar points_apart(const M& m, const N& n) {
     return most;
 }
 
+/// Whether the greatest singular value is less than 30 times the least, and that is above a thirtieth.
+template <class T>
+bool well_conditioned(const Eigen::MatrixX<T>& x) {
+    const Eigen::VectorX<T> squares =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixX<T>>(x.transpose() * x, Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    return squares[0] * T(900) > std::max(T(1), squares[squares.size() - 1]);
+}
+
 template <class P>
 struct RegressionTest : ::testing::Test {
     using Scalar = typename P::Scalar;
@@ -90,15 +100,13 @@ struct RegressionTest : ::testing::Test {
             c.y.push_back(any_unit<P>(turn, 3));
         }
         c.x = design<Scalar>(c.list, c.readings, 2);
-        const Eigen::JacobiSVD<Eigen::MatrixX<Scalar>> svd(c.x);
-        const auto& s = svd.singularValues();
-        RC_PRE(s[s.size() - 1] * 30 > std::max(Scalar(1), s[0]));
+        RC_PRE(well_conditioned(c.x));
         return c;
     }
 };
 
-using Systems =
-    ::testing::Types<DualComplex<float>, DualComplex<double>, DualQuaternion<float>, DualQuaternion<double>>;
+// Plane and space, float and double: each once, since nothing in the regressions is for one pair only.
+using Systems = ::testing::Types<DualComplex<float>, DualQuaternion<double>>;
 TYPED_TEST_SUITE(RegressionTest, Systems);
 
 // ---- The closed form
@@ -173,8 +181,7 @@ TYPED_TEST(RegressionTest, LeavesTheReferenceNothingWhereAConstantIsAmongTheFeat
         auto c = TestFixture::any(*whole(4, 10));
         c.list = monomials(2, 0, 1);
         c.x = design<T>(c.list, c.readings, 2);
-        const Eigen::JacobiSVD<Eigen::MatrixX<T>> svd(c.x);
-        RC_PRE(svd.singularValues()[2] * 30 > svd.singularValues()[0]);
+        RC_PRE(well_conditioned(c.x));
         const auto phi = features<T>(c.list, TestFixture::any_reading());
         RC_ASSERT(std::abs(blend_weights<P>(c.blended(), phi).back()) <= TestFixture::rounding);
     });
@@ -305,7 +312,7 @@ TEST(Regression, SaysWhatIsMissing) {
     } catch (const RankDeficient& e) {
         EXPECT_STREQ(e.what(),
                      "The observations tell only 2 of the 3 features apart: take more or other observations, "
-                     "fewer features, or an l2 term above 0.");
+                     "fewer features, or a larger l2 term.");
     }
 }
 
