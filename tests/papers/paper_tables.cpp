@@ -7,7 +7,9 @@
 #include <iostream>
 #include <vector>
 
+#include "balloon.h"
 #include "dcn.h"
+#include "finger.h"
 #include "flops.h"
 #include "kavan.h"
 #include "kavan_properties.h"
@@ -23,7 +25,8 @@ std::vector<Table> all_tables() {
     namespace papers = probewarp::papers;
     std::vector<Table> tables;
     for (const auto rows : {papers::flops_tables(), papers::dcn_tables(), papers::kavan_tables(),
-                            papers::kavan_properties_tables(), papers::kavan_speed_tables()})
+                            papers::kavan_properties_tables(), papers::kavan_speed_tables(),
+                            papers::finger_tables(), papers::balloon_tables()})
         tables.insert(tables.end(), rows.begin(), rows.end());
     return tables;
 }
