@@ -186,7 +186,7 @@ template <class T>
 DualQuaternionLog<T> log_of_whole_turn(const glm::vec<3, T>& b) {
     const T length = glm::length(b);
     const auto axis = length > T(0) ? b / length : glm::vec<3, T>(T(-1), T(0), T(0));
-    return {axis * std::numbers::pi_v<T>, axis * -length};
+    return {axis * T(std::numbers::pi), axis * -length};
 }
 
 /// The inverse of exp for a unit, with |r| in [0, pi]; every unit has a logarithm. Near a whole turn (q0 near
