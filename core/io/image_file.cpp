@@ -47,6 +47,10 @@ constexpr std::array<ImageFormat, 7> formats{{
     {"tga", "TGA", tga_endings, looks_like_tga, decode_tga, encode_tga},
 }};
 
+constexpr std::array<CompressionName, 3> compression_names{{{"fast", "Fast", Compression::fast},
+                                                            {"default", "Default", Compression::standard},
+                                                            {"small", "Small", Compression::small}}};
+
 const ImageFormat* recognised_format(Bytes bytes, const std::string& name) {
     for (const ImageFormat& format : formats)
         if (format.recognise(bytes) && (format.name != "tga" || image_format_of(name) == &format))
@@ -62,6 +66,8 @@ std::string name_without_folder(const std::string& name) {
 }  // namespace
 
 std::span<const ImageFormat> image_formats() { return formats; }
+
+std::span<const CompressionName> compressions() { return compression_names; }
 
 const ImageFormat* find_image_format(string_view name) {
     const auto found =

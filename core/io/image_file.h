@@ -13,9 +13,22 @@
 
 namespace probewarp {
 
+/// What a PNG is to be, quickly there or small. The pixels are the same.
+enum class Compression { fast, standard, small };
+
+struct CompressionName {
+    std::string_view name;   ///< "fast": what --compression calls it
+    std::string_view label;  ///< "Fast": what a person reads
+    Compression compression;
+};
+
+/// From the fastest to the smallest.
+std::span<const CompressionName> compressions();
+
 struct EncodeOptions {
     Colour background{255, 255, 255};  ///< under a picture with alpha, where the format has none
     int quality = 95;                  ///< of JPEG, 1 to 100
+    Compression compression = Compression::standard;  ///< of PNG
 };
 
 struct ImageFormat {

@@ -1,4 +1,4 @@
-// PNG in and out through libspng. The file's chunk list is walked first, so that libspng sees only whole
+// PNG in through libspng; png_encoder.cpp is the way out. The file's chunk list is walked first, so that libspng sees only whole
 // files, and of those only the chunks that we use: text and the rest cannot cost anything.
 #include <spng.h>
 
@@ -181,105 +181,6 @@ Image decode_png(Bytes bytes) {
     check(spng_decode_chunks(context.spng));
     read_extras(context.spng, image);
     return image;
-}
-
-// ---- writing ----
-
-namespace {
-
-void check_encoding(int error) {
-    if (error == SPNG_OK) return;
-    if (error == SPNG_EMEM) throw std::bad_alloc();
-    throw Error(std::string("cannot be written as PNG: ") + spng_strerror(error));
-}
-
-void set_extras(spng_ctx* spng, const Image& image, std::vector<std::byte>& icc) {
-    if (!icc.empty()) {
-        spng_iccp iccp{};
-        std::strcpy(iccp.profile_name, "ICC profile");
-        iccp.profile = reinterpret_cast<char*>(icc.data());
-        iccp.profile_len = icc.size();
-        check_encoding(spng_set_iccp(spng, &iccp));
-    }
-    if (image.resolution && is_resolution(image.resolution->x, image.resolution->y)) {
-        spng_phys phys{image.resolution->x, image.resolution->y, 1};
-        check_encoding(spng_set_phys(spng, &phys));
-    }
-}
-
-/// An encoder into memory, ready for its header.
-struct Encoder {
-    Context context{SPNG_CTX_ENCODER};
-    spng_ctx* spng = context.spng;
-
-    Encoder(int width, int height, int bits, std::uint8_t color_type) {
-        check_encoding(spng_set_option(spng, SPNG_ENCODE_TO_BUFFER, 1));
-        // Of zlib's levels 5 is where the curve bends: on drawings and photographs 6 saves one per cent in
-        // half as much time again and 9 three in four times as much, while 1 takes a fifth more bytes.
-        check_encoding(spng_set_option(spng, SPNG_IMG_COMPRESSION_LEVEL, 5));
-        spng_ihdr ihdr{};
-        ihdr.width = std::uint32_t(width);
-        ihdr.height = std::uint32_t(height);
-        ihdr.bit_depth = std::uint8_t(bits);
-        ihdr.color_type = color_type;
-        check_encoding(spng_set_ihdr(spng, &ihdr));
-    }
-    void begin_rows() {
-        check_encoding(spng_encode_image(spng, nullptr, 0, SPNG_FMT_PNG,
-                                         SPNG_ENCODE_PROGRESSIVE | SPNG_ENCODE_FINALIZE));
-    }
-    void row(const void* samples, std::size_t bytes) {
-        const int error = spng_encode_row(spng, samples, bytes);
-        check_encoding(error == SPNG_EOI ? SPNG_OK : error);
-    }
-    std::vector<std::byte> take() {
-        std::size_t length = 0;
-        int error = 0;
-        // The buffer is ours from here on, to be given back by free().
-        const std::unique_ptr<void, decltype(&std::free)> buffer(spng_get_png_buffer(spng, &length, &error),
-                                                                 &std::free);
-        check_encoding(error);
-        const auto* first = static_cast<const std::byte*>(buffer.get());
-        return {first, first + length};
-    }
-};
-
-/// Row after row into the encoder; without the alpha samples where `channels` is 3.
-template <class Sample>
-void write_rows(Encoder& encoder, const Image& image, const std::vector<Sample>& rgba, std::size_t channels) {
-    const std::size_t width = std::size_t(image.width);
-    std::vector<Sample> row(width * channels);
-    for (int y = 0; y < image.height; ++y) {
-        const Sample* from = rgba.data() + std::size_t(y) * width * 4;
-        for (std::size_t x = 0; x < width; ++x)
-            std::copy_n(from + x * 4, channels, row.data() + x * channels);
-        encoder.row(row.data(), row.size() * sizeof(Sample));
-    }
-}
-
-}  // namespace
-
-std::vector<std::byte> encode_png(const Image& image, const EncodeOptions&) {
-    std::vector<std::byte> icc =
-        image.icc;  // libspng keeps a pointer that is not const; declared first, dies last
-    const bool alpha = has_alpha(image);
-    Encoder encoder(image.width, image.height, image.bits(),
-                    alpha ? SPNG_COLOR_TYPE_TRUECOLOR_ALPHA : SPNG_COLOR_TYPE_TRUECOLOR);
-    set_extras(encoder.spng, image, icc);
-    encoder.begin_rows();
-    std::visit([&](const auto& rgba) { write_rows(encoder, image, rgba, alpha ? 4 : 3); }, image.rgba);
-    return encoder.take();
-}
-
-std::vector<std::byte> encode_png_samples(int width, int height, int channels,
-                                          std::span<const std::uint16_t> samples) {
-    Encoder encoder(width, height, 16,
-                    channels == 1 ? SPNG_COLOR_TYPE_GRAYSCALE : SPNG_COLOR_TYPE_GRAYSCALE_ALPHA);
-    encoder.begin_rows();
-    const std::size_t row = std::size_t(width) * std::size_t(channels);
-    for (std::size_t y = 0; y < std::size_t(height); ++y)
-        encoder.row(samples.data() + y * row, row * sizeof(std::uint16_t));
-    return encoder.take();
 }
 
 }  // namespace probewarp

@@ -1,0 +1,19 @@
+// Deflating a long stream in strips that know nothing of each other, so that many threads may do it. Private
+// to io.
+#pragma once
+
+#include <vector>
+
+#include "io/bytes.h"
+
+namespace probewarp {
+
+/// How large libdeflate makes `raw` at this level (1 to 12), with nothing else known. Throws std::bad_alloc.
+std::vector<std::byte> deflate_whole(Bytes raw, int level);
+
+/// Turns what deflate_whole made of `raw_bytes` bytes into a strip: the strips of a stream one after the
+/// other, and a whole one from deflate_whole behind them, are one deflate stream (RFC 1951) of all their
+/// bytes.
+void open_end(std::vector<std::byte>& deflated, std::size_t raw_bytes);
+
+}  // namespace probewarp

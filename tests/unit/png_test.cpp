@@ -1,0 +1,292 @@
+// PNG out: every size, depth and compression comes back byte for byte, through strips and whole, and what is
+// made does not depend on how rows come.
+#include <gtest/gtest.h>
+#include <libdeflate.h>
+#include <zlib.h>
+
+#include <limits>
+#include <random>
+
+#include "image_checks.h"
+#include "io/deflate_strip.h"
+#include "io/formats.h"
+#include "io/png_encoder.h"
+#include "io/png_filter.h"
+
+namespace probewarp {
+namespace {
+
+using namespace testing;
+
+constexpr std::uint32_t seed = 20240611;
+
+enum class Kind { noise, gradient, flat };
+
+/// Samples of every kind of picture; the alpha is full where `opaque`.
+template <class Sample>
+Image picture_of(Kind kind, int width, int height, bool opaque) {
+    std::mt19937 random(seed);
+    std::vector<Sample> rgba;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 4; ++c) {
+                const int value = kind == Kind::noise      ? int(random())
+                                  : kind == Kind::gradient ? x + 3 * y + c
+                                                           : c;
+                rgba.push_back(c == 3 && opaque ? std::numeric_limits<Sample>::max() : Sample(value));
+            }
+    return {width, height, std::move(rgba), {}, {}};
+}
+
+std::string name(const Image& image, Compression compression) {
+    return std::to_string(image.width) + " x " + std::to_string(image.height) + ", " +
+           std::to_string(image.bits()) + " bits, compression " + std::to_string(int(compression));
+}
+
+void expect_round_trip(const Image& image) {
+    for (const auto& row : compressions()) {
+        const Image back = decode(encode(image, "png", {.compression = row.compression}));
+        EXPECT_EQ(back.rgba, image.rgba) << name(image, row.compression);
+    }
+}
+
+TEST(Png, EverySizeComesBack) {
+    // 1 and its neighbours, and both sides of the 16 and 32 bytes of vectors.
+    for (const int width : {1, 2, 3, 4, 5, 6, 7, 10, 11, 16, 17, 33})
+        for (const int height : {1, 2, 3, 7})
+            for (const bool opaque : {true, false}) {
+                expect_round_trip(picture_of<std::uint8_t>(Kind::noise, width, height, opaque));
+                expect_round_trip(picture_of<std::uint16_t>(Kind::gradient, width, height, opaque));
+            }
+}
+
+TEST(Png, PicturesOfManyStripsComeBack) {
+    // A strip is about a mebibyte, or four: these take several, the last ones shorter than the others.
+    for (const Kind kind : {Kind::noise, Kind::gradient, Kind::flat})
+        for (const bool opaque : {true, false})
+            expect_round_trip(picture_of<std::uint8_t>(kind, 1500, 1101, opaque));
+    expect_round_trip(picture_of<std::uint16_t>(Kind::gradient, 700, 1801, true));
+    expect_round_trip(picture_of<std::uint8_t>(Kind::gradient, 32768, 41, false));
+    expect_round_trip(picture_of<std::uint8_t>(Kind::gradient, 31, 32768, false));
+}
+
+TEST(Png, BothSidesOfAStripsEnd) {
+    // 1023 x 4 + 1 bytes, the row of a mebibyte's 256: one strip, two with one row in the second, three.
+    constexpr int width = 1023, strip_rows = (1 << 20) / (width * 4 + 1);
+    for (const int rows : {strip_rows - 1, strip_rows, strip_rows + 1, 2 * strip_rows, 2 * strip_rows + 1})
+        expect_round_trip(picture_of<std::uint8_t>(Kind::gradient, width, rows, false));
+}
+
+TEST(Png, GreyOfSixteenBitsComesBack) {
+    for (const int channels : {1, 2}) {
+        const int width = 1201, height = 700;  // of one channel two strips, of two four
+        std::vector<std::uint16_t> samples(std::size_t(width * height * channels));
+        std::mt19937 random(seed);
+        for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = std::uint16_t(i / 7 + random() % 5);
+        const Image back = decode(encode_png_samples(width, height, channels, samples));
+        ASSERT_EQ(back.bits(), 16);
+        const auto& rgba = std::get<1>(back.rgba);
+        for (std::size_t i = 0; i < std::size_t(width * height); ++i) {
+            const std::size_t at = i * std::size_t(channels);
+            ASSERT_EQ(rgba[i * 4], samples[at]);
+            ASSERT_EQ(rgba[i * 4 + 3], channels == 2 ? samples[at + 1] : 65535);
+        }
+    }
+}
+
+/// The zlib stream of a PNG, out of its IDAT chunks.
+File idat_of(const File& png, int* chunks = nullptr) {
+    File all;
+    for (std::size_t at = 8; at < png.size();) {
+        const std::size_t length = be32(png, at);
+        if (begins_with(Bytes(png).subspan(at + 4), "IDAT")) {
+            const auto data = Bytes(png).subspan(at + 8, length);
+            all.insert(all.end(), data.begin(), data.end());
+            if (chunks) ++*chunks;
+        }
+        at += length + 12;
+    }
+    return all;
+}
+
+TEST(Png, TheStripsAreOneZlibStreamForOtherReadersToo) {
+    // Other inflaters than the reader's, and with the Adler-32, which libspng does not look at.
+    const Image image = picture_of<std::uint8_t>(Kind::gradient, 1500, 1101, false);
+    for (const auto& row : compressions()) {
+        int chunks = 0;
+        const File stream = idat_of(encode(image, "png", {.compression = row.compression}), &chunks);
+        EXPECT_GT(chunks, 1);
+        uLongf length = 1101 * (1500 * 4 + 1);
+        const uLongf expected = length;
+        std::vector<std::uint8_t> first(length), second(length);
+        ASSERT_EQ(
+            uncompress(first.data(), &length, reinterpret_cast<const Bytef*>(stream.data()), stream.size()),
+            Z_OK);
+        EXPECT_EQ(length, expected);
+        libdeflate_decompressor* decompressor = libdeflate_alloc_decompressor();
+        EXPECT_EQ(libdeflate_zlib_decompress(decompressor, stream.data(), stream.size(), second.data(),
+                                             second.size(), nullptr),
+                  LIBDEFLATE_SUCCESS);
+        libdeflate_free_decompressor(decompressor);
+        EXPECT_EQ(first, second);
+    }
+}
+
+TEST(Png, RowsMayComeInAnyPortions) {
+    Image image = picture_of<std::uint8_t>(Kind::gradient, 1500, 1101, true);
+    const auto expect_the_same = [&] {
+        const Samples samples{pixel_bytes(image).data(), image.width, image.height, 4, 8};
+        for (const auto& row : compressions()) {
+            PngRows at_once(samples, row.compression), bit_by_bit(samples, row.compression);
+            at_once.advance(image.height);
+            for (int rows = 1; rows < image.height; rows += 97) bit_by_bit.advance(rows);
+            bit_by_bit.advance(image.height);
+            const auto expected = at_once.finish(), strips = bit_by_bit.finish();
+            EXPECT_EQ(bit_by_bit.kept_channels(), at_once.kept_channels());
+            ASSERT_EQ(strips.size(), expected.size());
+            for (std::size_t i = 0; i < strips.size(); ++i) {
+                EXPECT_EQ(strips[i].bytes, expected[i].bytes);
+                EXPECT_EQ(strips[i].adler, expected[i].adler);
+            }
+        }
+    };
+    expect_the_same();
+    std::get<0>(image.rgba)[(1000 * 1500 + 7) * 4 + 3] =
+        254;  // alpha where most strips are under way without
+    expect_the_same();
+}
+
+TEST(Png, RowsThatNeverCameAreForgotten) {
+    const Image image = picture_of<std::uint8_t>(Kind::noise, 1500, 1101, true);
+    PngRows rows({pixel_bytes(image).data(), image.width, image.height, 4, 8}, Compression::standard);
+    rows.advance(1000);
+}
+
+TEST(Png, SmallIsSmallerThanTheDefaultAndThatThanFast) {
+    // Waves: what a filter and a longer search are for.
+    Image image = picture_of<std::uint8_t>(Kind::flat, 900, 600, true);
+    auto& rgba = std::get<0>(image.rgba);
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+        if (i % 4 != 3)
+            rgba[i] = std::uint8_t(128 + 100 * std::sin(double(i / 4 % 900) * double(i / 3600) / 9e3));
+    std::size_t last = std::numeric_limits<std::size_t>::max();
+    for (const auto& row : compressions()) {
+        const std::size_t size = encode(image, "png", {.compression = row.compression}).size();
+        EXPECT_LT(size, last) << row.name;
+        last = size;
+    }
+}
+
+// ---- filters ----
+
+/// The bytes before the filter, by the specification's section 9 word for word.
+std::vector<std::uint8_t> unfiltered(const std::vector<std::uint8_t>& filtered,
+                                     const std::vector<std::uint8_t>& above, std::size_t step) {
+    std::vector<std::uint8_t> row(above.size());
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        const int a = i >= step ? row[i - step] : 0, b = above[i], c = i >= step ? above[i - step] : 0;
+        const int p = a + b - c, pa = std::abs(p - a), pb = std::abs(p - b), pc = std::abs(p - c);
+        const int nearest = pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
+        const std::array<int, 5> predicted{0, a, b, (a + b) / 2, nearest};
+        row[i] = std::uint8_t(filtered[i + 1] + predicted[filtered[0]]);
+    }
+    return row;
+}
+
+TEST(PngFilter, EachFilterIsTheSpecifications) {
+    std::mt19937 random(seed);
+    std::vector<std::uint8_t> scratch;
+    for (const std::size_t step : {1u, 2u, 3u, 4u, 6u, 8u})
+        for (std::size_t pixels = 1; pixels < 40; ++pixels) {
+            std::vector<std::uint8_t> row(pixels * step), above(row.size());
+            for (auto& v : row) v = std::uint8_t(random());
+            for (auto& v : above) v = std::uint8_t(random());
+            for (unsigned type = 0; type < 5; ++type) {
+                std::vector<std::uint8_t> out(row.size() + 1);
+                filter_row(row, above, step, 1u << type, out, scratch);
+                ASSERT_EQ(out[0], type);
+                ASSERT_EQ(unfiltered(out, above, step), row);
+            }
+        }
+}
+
+TEST(PngFilter, TheLeastSumIsChosen) {
+    std::vector<std::uint8_t> scratch, out(601), row(600), above(600);
+    const auto chosen = [&](FilterSet filters) {
+        filter_row(row, above, 3, filters, out, scratch);
+        EXPECT_EQ(unfiltered(out, above, 3), row);
+        return int(out[0]);
+    };
+    EXPECT_EQ(chosen(all_filters), 0) << "all are equal: the first";
+    row.assign(600, 200);
+    EXPECT_EQ(chosen(all_filters), 1) << "left says it, above does not";
+    above = row;
+    EXPECT_EQ(chosen(all_filters), 2) << "above says all, left not the first pixel";
+    EXPECT_EQ(chosen(no_filter), 0);
+    std::mt19937 random(seed);
+    for (std::size_t i = 0; i < row.size(); ++i) above[i] = std::uint8_t(random());
+    for (std::size_t i = 0; i < row.size(); ++i)
+        row[i] = std::uint8_t((i < 3 ? 0 : row[i - 3]) / 2 + above[i] / 2);
+    EXPECT_EQ(chosen(all_filters), 3);
+    for (std::size_t i = 0; i < row.size(); ++i) {  // two slopes: across and down
+        row[i] = std::uint8_t(i / 3 + 9);
+        above[i] = std::uint8_t(i / 3);
+    }
+    EXPECT_EQ(chosen(all_filters), 1) << "1 a pixel against 9";
+    for (std::size_t i = 0; i < row.size(); ++i)
+        row[i] = std::uint8_t(i < 300 ? 40 : 90), above[i] = std::uint8_t(i < 300 ? 70 : 90);
+    EXPECT_EQ(chosen(all_filters), 4) << "steps that left or above foresee by turns";
+    // Bytes as large as 128 all over: the sums stay whole.
+    row.assign(600, 128), above.assign(600, 0);
+    out.assign(601, 0);
+    EXPECT_EQ(chosen(no_filter | up_filter), 0);
+    EXPECT_EQ(chosen(sub_or_up), 1);
+}
+
+// ---- strips ----
+
+std::vector<std::byte> inflated(Bytes stream, std::size_t size) {
+    std::vector<std::byte> out(size + 1);
+    z_stream z{};
+    EXPECT_EQ(inflateInit2(&z, -MAX_WBITS), Z_OK);
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(stream.data()));
+    z.avail_in = uInt(stream.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = uInt(out.size());
+    EXPECT_EQ(inflate(&z, Z_FINISH), Z_STREAM_END) << z.total_out;
+    EXPECT_EQ(z.avail_in, 0u) << "nothing behind the end";
+    out.resize(z.total_out);
+    inflateEnd(&z);
+    return out;
+}
+
+/// Bytes of which all lengths, and so all eight bits at which a stream may end, come up.
+std::vector<std::byte> strip_bytes(std::mt19937& random, std::size_t size, unsigned values) {
+    std::vector<std::byte> raw(size);
+    for (auto& byte : raw) byte = std::byte(random() % values);
+    return raw;
+}
+
+TEST(DeflateStrip, StripsMakeOneStream) {
+    std::mt19937 random(seed);
+    std::array<int, 8> ends{};  // how many whole streams' last bytes hold so many bits, by their highest
+    for (const int level : {1, 2, 4, 6, 9, 12})
+        for (int run = 0; run < 60; ++run) {
+            std::vector<std::byte> stream, all;
+            for (int i = 0; i < 4; ++i) {
+                // One value: matches alone; 256: stored blocks; the sizes reach over several blocks.
+                const unsigned values = std::array{1u, 2u, 17u, 256u}[random() % 4];
+                const auto raw = strip_bytes(random, 1 + random() % (run % 10 == 0 ? 400000 : 3000), values);
+                auto strip = deflate_whole(raw, level);
+                ++ends[std::size_t(std::bit_width(std::to_integer<unsigned>(strip.back()))) % 8];
+                if (i < 3) open_end(strip, raw.size());
+                stream.insert(stream.end(), strip.begin(), strip.end());
+                all.insert(all.end(), raw.begin(), raw.end());
+            }
+            ASSERT_EQ(inflated(stream, all.size()), all) << "level " << level << ", run " << run;
+        }
+    for (const int count : ends) EXPECT_GT(count, 0);
+}
+
+}  // namespace
+}  // namespace probewarp
