@@ -10,6 +10,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "io/image_file.h"
 #include "io/printable.h"
 #include "model/deform.h"
 #include "model/weights.h"
@@ -83,7 +84,12 @@ void add_render(CLI::App& app, RenderOptions& o) {
                      "PNG, JPEG, BMP, TGA, OBJ (the mesh) or probewarp (a project); - for standard output")
         ->required();
     command->add_option("--probes", o.probes_csv, "Add the probes of a CSV file of the iPad program");
-    command->add_option("--image", o.image, "Put another picture under the probes");
+    command
+        ->add_option(
+            "--image", o.images,
+            "Put another picture under the probes; several, one after the other, where OUTPUT is such "
+            "as DIR/{name}.png")
+        ->expected(1, CLI::detail::expected_max_vector_size);
     add_binding(*command, o);
     command->add_option("--blend", o.blend, "Blend method")->check(CLI::IsMember(names(blend_methods())));
     auto* scale =
@@ -96,6 +102,8 @@ void add_render(CLI::App& app, RenderOptions& o) {
     command->add_option("--background", o.background, "#rrggbb, white, black or none");
     command->add_option("--format", o.format,
                         "png, jpeg, bmp, tga, obj or probewarp, whatever OUTPUT ends with");
+    command->add_option("--compression", o.compression, "Of PNG: fast, default or small")
+        ->check(CLI::IsMember(names(compressions())));
     command->add_option("--heat", o.heat,
                         "Lay the weights of the probe of that name or number over the picture; all: all "
                         "probes' colours, mixed by their weights");
@@ -105,6 +113,7 @@ void add_render(CLI::App& app, RenderOptions& o) {
     add_backend(*command, o.backend);
     command->add_option("--deform", o.deform, "processor or shader: which one moves the vertices")
         ->check(CLI::IsMember({"processor", "shader"}));
+    command->add_flag("--timings", o.timings, "Tell where the time goes, on standard error");
     command->add_flag("--quiet", o.quiet, "Show no progress");
 }
 
@@ -134,11 +143,13 @@ void add_info(CLI::App& app, InfoOptions& o) {
 }
 
 int failed(int code, const std::string& message) {
-    fmt::print(stderr, "probewarp: {}\n", printable(message));
+    print_failure(message);
     return code;
 }
 
 }  // namespace
+
+void print_failure(const std::string& message) { fmt::print(stderr, "probewarp: {}\n", printable(message)); }
 
 int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path)) {
     CLI::App app("Probewarp deforms a picture with probes.\nWithout a command it opens a window on FILE.",
@@ -156,7 +167,7 @@ int run_command_line(int argc, char** argv, int (*open_window)(const std::string
     try {
         app.parse(argc, argv);
         if (app.got_subcommand("render"))
-            render(render_options);
+            return render(render_options);
         else if (app.got_subcommand("weights"))
             weights(weights_options);
         else if (app.got_subcommand("info"))

@@ -9,6 +9,9 @@
 
 namespace probewarp {
 
+/// One line on standard error.
+void print_failure(const std::string& message);
+
 /// What a command may set of the input's mesh and weights; empty: as the input has it.
 struct BindingOptions {
     std::vector<std::string> probes;  ///< put down on top of the input's
@@ -23,8 +26,9 @@ struct BindingOptions {
 struct RenderOptions : BindingOptions {
     std::string input, output;
     std::string probes_csv;  ///< of the iPad program; empty: none
-    std::string image;       ///< another picture under the probes; empty: the input's
-    std::string blend;       ///< empty: the input's
+    /// Other pictures under the probes; empty: the input's. Several: the output holds {name} for each one's.
+    std::vector<std::string> images;
+    std::string blend;  ///< empty: the input's
     double scale = 1;
     std::string size;
     int samples = 1;
@@ -36,9 +40,12 @@ struct RenderOptions : BindingOptions {
     std::string heat;    ///< whose weights lie over the picture: a probe, or "all"; empty: nobody's
     std::optional<double> opacity;  ///< of the heat map
     bool iso_lines = false;
+    std::string compression = "default";  ///< of PNG
+    bool timings = false;                 ///< told on standard error
     bool quiet = false;
 };
-void render(const RenderOptions& options);
+/// Returns the exit code: 1 where some of several pictures failed, each with its sentence on standard error.
+int render(const RenderOptions& options);
 
 struct WeightsOptions : BindingOptions {
     std::string input;

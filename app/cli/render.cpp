@@ -1,22 +1,19 @@
 // `probewarp render`: a picture or a project in, the deformed picture, mesh or project out.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/drawing.h"
+#include "cli/timings.h"
 #include "io/file.h"
 #include "io/image_file.h"
 #include "io/obj.h"
 #include "io/probes_csv.h"
 #include "io/project.h"
-#include "render/context.h"
-#include "render/export.h"
-#include "render/overlay.h"
 
 namespace probewarp {
 
@@ -65,23 +62,13 @@ void add_csv_probes(Document& document, const std::string& path) {
     }
 }
 
-Document document_of(const RenderOptions& o) {
-    Document document = read_document(o.input);
-    if (!o.image.empty()) replace_picture(document, std::make_shared<const Picture>(read_picture(o.image)));
+/// `document`, which is the input's, as the options want it on this picture.
+Document posed_on(Document document, PicturePtr picture, const RenderOptions& o) {
+    if (picture) replace_picture(document, std::move(picture));
     if (!o.probes_csv.empty()) add_csv_probes(document, o.probes_csv);
     if (!o.blend.empty()) document.blend = o.blend;
     apply(o, document);
     return document;
-}
-
-/// Lays the heat map of the weights over the picture, where it is asked for.
-void show_heat(Renderer& renderer, const Deformation& deformation, const RenderOptions& o) {
-    if (o.heat.empty()) return;
-    const Document& document = deformation.source;
-    OverlayStyle style{.heat = o.heat != "all", .iso_lines = o.iso_lines};
-    if (o.opacity) style.opacity = float(*o.opacity);
-    const int probe = style.heat ? document.probes[probe_named(document, o.heat, "--heat")].id : 0;
-    renderer.set_overlay(weight_overlay(deformation, probe), style);
 }
 
 void check_deform(const RenderOptions& o, const Document& document) {
@@ -112,78 +99,70 @@ void check_heat(const RenderOptions& o, Kind kind, const Document& document) {
             "--iso-lines: these are of one probe's share; expected a probe, not all, with --heat");
 }
 
-/// Shows how far a render is, once it has taken a second and where somebody watches.
-class Progress {
-  public:
-    explicit Progress(bool quiet) : on_(!quiet && isatty(STDERR_FILENO) == 1) {}
-    ~Progress() {
-        if (shown_) fmt::print(stderr, "\r\x1b[K");
-    }
-    void show(double part) {
-        if (!on_ || std::chrono::steady_clock::now() - start_ < std::chrono::seconds(1)) return;
-        shown_ = true;
-        fmt::print(stderr, "\rrendering {:3.0f} %", part * 100);
-        std::fflush(stderr);
-    }
-
-  private:
-    bool on_, shown_ = false;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-Image rendered(const Document& document, const Deformation& deformation, const ExportSettings& settings,
-               const RenderOptions& o) {
-    export_view(document, deformation,
-                settings);  // refuses a size that is too large before anything is opened
-    Progress progress(o.quiet);
-    const auto context = open_context(o.backend);
-    Renderer renderer;
-    renderer.set_picture(upload_picture(document.picture->image));
-    renderer.set_mesh(mesh_of(deformation));
-    if (o.deform == "shader")
-        renderer.set_blend(weights_of(deformation), deformation.transformations,
-                           glm::vec2(centre(document.picture->image)));
-    else
-        renderer.set_positions(deformation.now, deformation.moved);
-    show_heat(renderer, deformation, o);
-    ExportJob job(renderer, document, deformation, settings);
-    while (!job.done()) {
-        job.step();
-        progress.show(job.progress());
-    }
-    return job.take();
-}
-
 void write_output(const std::string& path, std::span<const std::byte> bytes) {
     if (path != "-") return write_file(path, bytes);
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
         throw Error("cannot write to standard output");
 }
 
-}  // namespace
+/// The one picture of `--image`, or null for the input's own.
+PicturePtr other_picture(const RenderOptions& o) {
+    if (o.images.empty()) return nullptr;
+    return std::make_shared<const Picture>(read_picture(o.images.front()));
+}
 
-void render(const RenderOptions& o) {
-    const OutputFormat format = output_format(o);
-    const ExportSettings settings = export_settings(o);
-    const Document document = document_of(o);
+void check_not_the_input(const RenderOptions& o, const std::filesystem::path& output) {
+    std::error_code ignored;
+    if (std::filesystem::equivalent(o.input, output, ignored))
+        throw UsageError(
+            fmt::format("-o {}: this is the input itself; expected another file", output.string()));
+}
+
+RenderPlan plan_of(const RenderOptions& o, const ImageFormat& format) {
+    RenderPlan plan{o, format, export_settings(o), {}};
+    plan.encode.background = plan.settings.background.value_or(plan.encode.background);
+    plan.encode.compression =
+        std::ranges::find(compressions(), o.compression, &CompressionName::name)->compression;
+    return plan;
+}
+
+void render_picture(const RenderOptions& o, const ImageFormat& format, const Document& document,
+                    const Deformation& deformation, Timings& timings) {
+    const RenderPlan plan = plan_of(o, format);
+    export_view(document, deformation, plan.settings);  // refuses what is too large before anything is opened
+    Progress progress(o.quiet);
+    const auto drawn = timings.measure(Stage::draw, [&] {
+        return Drawer(plan).draw(document, deformation, [&](double part) { progress.show(part); });
+    });
+    const auto bytes = timings.measure(Stage::encode, [&] { return drawn->encoding.finish(); });
+    timings.measure(Stage::write, [&] { write_output(o.output, bytes); });
+}
+
+void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
+    const Document document =
+        timings.measure(Stage::decode, [&] { return posed_on(read_document(o.input), other_picture(o), o); });
     check_deform(o, document);
     check_heat(o, format.kind, document);
-    std::error_code ignored;
-    if (format.kind != Kind::project && o.output != "-" &&
-        std::filesystem::equivalent(o.input, o.output, ignored))
-        throw UsageError(fmt::format("-o {}: this is the input itself; expected another file", o.output));
     if (format.kind == Kind::project) return write_output(o.output, encode_project(document));
+    if (o.output != "-") check_not_the_input(o, o.output);
 
     Deformation deformation;
-    update(deformation, document);
-    if (format.kind == Kind::mesh) {
-        const std::string text = encode_obj(document, deformation);
-        return write_output(o.output, std::as_bytes(std::span(text)));
-    }
-    const Image image = rendered(document, deformation, settings, o);
-    EncodeOptions encode;
-    encode.background = settings.background.value_or(encode.background);
-    write_output(o.output, format.image->encode(image, encode));
+    timings.measure(Stage::weights, [&] { update(deformation, document); });
+    if (format.kind == Kind::image) return render_picture(o, *format.image, document, deformation, timings);
+    const std::string text = encode_obj(document, deformation);
+    write_output(o.output, std::as_bytes(std::span(text)));
+}
+
+}  // namespace
+
+int render(const RenderOptions& o) {
+    Timings timings;
+    const OutputFormat format = output_format(o);
+    export_settings(o);  // throws where they cannot be understood
+    if (o.images.size() > 1) throw UsageError("--image: one picture at a time");
+    render_one(o, format, timings);
+    if (o.timings) timings.print();
+    return 0;
 }
 
 }  // namespace probewarp

@@ -84,14 +84,6 @@ std::string file_name(const Document& document, std::size_t probe) {
     return fmt::format("{:0{}}-{}.png", probe + 1, digits, name);
 }
 
-void make_folder(const std::filesystem::path& path) {
-    std::error_code error;
-    std::filesystem::create_directories(path, error);
-    if (!std::filesystem::is_directory(path))
-        throw Error(fmt::format("{}: this folder cannot be made: {}", path.string(),
-                                error ? error.message() : "something else has its name"));
-}
-
 void write_weights(const Document& document, const WeightsOptions& o, std::array<int, 2> size) {
     Deformation deformation;
     update(deformation, document);

@@ -206,6 +206,14 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
     }
 }
 
+void make_folder(const fs::path& path) {
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (!fs::is_directory(path))
+        refuse(path,
+               "this folder cannot be made: " + (error ? error.message() : "something else has its name"));
+}
+
 std::string printable(std::string_view text) {
     std::string out;
     for (std::size_t i = 0; i < text.size();) {

@@ -26,4 +26,7 @@ std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t 
 /// the old bytes; access control lists and extended attributes are not carried over.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
+/// Makes the folder, and those it lies in, where they are missing. Throws Error, naming it, where it cannot.
+void make_folder(const std::filesystem::path& path);
+
 }  // namespace probewarp

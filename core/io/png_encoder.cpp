@@ -12,6 +12,7 @@
 
 #include "io/deflate_strip.h"
 #include "io/formats.h"
+#include "io/image_encoding.h"
 #include "io/png_filter.h"
 
 namespace probewarp {
@@ -266,6 +267,10 @@ void put_strips(std::vector<std::byte>& to, std::span<const PngStrip> strips) {
     }
 }
 
+Samples rgba_of(const Image& image) {
+    return {pixel_bytes(image).data(), image.width, image.height, 4, image.bits()};
+}
+
 std::vector<std::byte> file_of(const Samples& samples, PngRows& rows, Bytes icc,
                                const std::optional<Resolution>& resolution) {
     const std::vector<PngStrip> strips = rows.finish();
@@ -281,11 +286,26 @@ std::vector<std::byte> file_of(const Samples& samples, PngRows& rows, Bytes icc,
 
 }  // namespace
 
+ImageEncoding::ImageEncoding(const ImageFormat& format, const Image& image, const EncodeOptions& options)
+    : format_(format), image_(image), options_(options) {
+    if (format.encode == &encode_png) png_ = std::make_unique<PngRows>(rgba_of(image), options.compression);
+}
+
+ImageEncoding::~ImageEncoding() = default;
+
+void ImageEncoding::advance(int rows) {
+    if (png_) png_->advance(rows);
+}
+
+std::vector<std::byte> ImageEncoding::finish() {
+    return png_ ? file_of(rgba_of(image_), *png_, image_.icc, image_.resolution)
+                : format_.encode(image_, options_);
+}
+
 std::vector<std::byte> encode_png(const Image& image, const EncodeOptions& options) {
-    const Samples samples{pixel_bytes(image).data(), image.width, image.height, 4, image.bits()};
-    PngRows rows(samples, options.compression);
+    PngRows rows(rgba_of(image), options.compression);
     rows.advance(image.height);
-    return file_of(samples, rows, image.icc, image.resolution);
+    return file_of(rgba_of(image), rows, image.icc, image.resolution);
 }
 
 std::vector<std::byte> encode_png_samples(int width, int height, int channels,

@@ -29,7 +29,7 @@ Wide paeth(Wide a, Wide b, Wide c) {
 template <class Predict>
 void filter(const uint8_t* __restrict row, const uint8_t* __restrict above, std::size_t bytes,
             std::size_t step, uint8_t* __restrict out, Predict predict) {
-    for (std::size_t i = 0; i < std::min(step, bytes); ++i)
+    for (std::size_t i = 0; i < step; ++i)
         out[i] = uint8_t(row[i] - predict(Wide(0), Wide(above[i]), Wide(0)));
     for (std::size_t i = step; i < bytes; ++i)
         out[i] = uint8_t(row[i] - predict(Wide(row[i - step]), Wide(above[i]), Wide(above[i - step])));
@@ -69,7 +69,7 @@ std::uint32_t sum_of_magnitudes(const uint8_t* bytes, std::size_t count) {
 
 void filter_row(std::span<const uint8_t> row, std::span<const uint8_t> above, std::size_t step,
                 FilterSet filters, std::span<uint8_t> out, std::vector<uint8_t>& scratch) {
-    assert(filters != 0 && above.size() == row.size() && out.size() == row.size() + 1);
+    assert(filters != 0 && row.size() >= step && above.size() == row.size() && out.size() == row.size() + 1);
     const bool choice = !std::has_single_bit(filters);
     scratch.resize(row.size());
     std::uint32_t least = 0xFFFFFFFF;

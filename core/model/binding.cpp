@@ -75,6 +75,20 @@ std::shared_ptr<const Binding> make_binding(const Document& document,
     return binding;
 }
 
+std::shared_ptr<const Binding> carried_over(const std::shared_ptr<const Binding>& binding,
+                                            const Document& document) {
+    if (!binding) return nullptr;
+    Document alike = document;
+    alike.picture = binding->source.picture;
+    const Image &before = alike.picture->image, &now = document.picture->image;
+    if (!is_bound(binding.get(), alike) || before.width != now.width || before.height != now.height ||
+        binding->kept != visible_cells(now, document.mesh))
+        return nullptr;
+    auto other = std::make_shared<Binding>(*binding);
+    other->source = document;
+    return other;
+}
+
 int lone_islands(const Binding& binding) {
     return int(binding.followed.size()) -
            int(std::count(binding.followed.begin(), binding.followed.end(), no_vertex));

@@ -43,6 +43,11 @@ std::shared_ptr<const Binding> make_binding(const Document& document,
                                             const std::shared_ptr<const Binding>& before,
                                             const std::atomic<bool>* given_up = nullptr);
 
+/// `binding` (may be null) for the same probes on another picture, where that gives the same: it is as large
+/// and shows the same cells. Else null.
+std::shared_ptr<const Binding> carried_over(const std::shared_ptr<const Binding>& binding,
+                                            const Document& document);
+
 /// Islands that have no probe of their own and follow the nearest one.
 int lone_islands(const Binding& binding);
 

@@ -1,6 +1,7 @@
 // Exporting: what a deformed document looks like as a picture of its own, rendered tile by tile.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -38,6 +39,9 @@ class ExportJob {
 
     bool done() const { return next_ == tiles_[0] * tiles_[1]; }
     double progress() const { return double(next_) / (tiles_[0] * tiles_[1]); }
+    /// As far as it is rendered: rows [0, finished_rows()) are final. Stays where it is until take().
+    const Image& image() const { return image_; }
+    int finished_rows() const { return std::min(next_ / tiles_[0] * tile_, view_.height); }
     /// Renders the next tile.
     void step();
     /// The exported picture, with the original's depth, colour profile and resolution. Requires done().

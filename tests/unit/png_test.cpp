@@ -62,12 +62,12 @@ TEST(Png, EverySizeComesBack) {
 
 TEST(Png, PicturesOfManyStripsComeBack) {
     // A strip is about a mebibyte, or four: these take several, the last ones shorter than the others.
-    for (const Kind kind : {Kind::noise, Kind::gradient, Kind::flat})
-        for (const bool opaque : {true, false})
+    for (const bool opaque : {true, false})
+        for (const Kind kind : {Kind::noise, Kind::flat})
             expect_round_trip(picture_of<std::uint8_t>(kind, 1500, 1101, opaque));
     expect_round_trip(picture_of<std::uint16_t>(Kind::gradient, 700, 1801, true));
-    expect_round_trip(picture_of<std::uint8_t>(Kind::gradient, 32768, 41, false));
-    expect_round_trip(picture_of<std::uint8_t>(Kind::gradient, 31, 32768, false));
+    expect_round_trip(picture_of<std::uint8_t>(Kind::flat, 32768, 41, false));
+    expect_round_trip(picture_of<std::uint8_t>(Kind::flat, 31, 32768, false));
 }
 
 TEST(Png, BothSidesOfAStripsEnd) {
@@ -236,10 +236,8 @@ TEST(PngFilter, TheLeastSumIsChosen) {
     for (std::size_t i = 0; i < row.size(); ++i)
         row[i] = std::uint8_t(i < 300 ? 40 : 90), above[i] = std::uint8_t(i < 300 ? 70 : 90);
     EXPECT_EQ(chosen(all_filters), 4) << "steps that left or above foresee by turns";
-    // Bytes as large as 128 all over: the sums stay whole.
-    row.assign(600, 128), above.assign(600, 0);
-    out.assign(601, 0);
-    EXPECT_EQ(chosen(no_filter | up_filter), 0);
+    // 513 magnitudes of 128 are 65664, more than 16 bits hold, and more than the 384 of the first pixel.
+    row.assign(513, 128), above.assign(513, 0), out.assign(514, 0);
     EXPECT_EQ(chosen(sub_or_up), 1);
 }
 

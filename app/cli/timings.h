@@ -1,0 +1,58 @@
+// Where the time of a render goes, for --timings.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <mutex>
+#include <string_view>
+
+namespace probewarp {
+
+enum class Stage { decode, weights, draw, encode, write };
+inline constexpr std::array<std::string_view, 5> stage_names{"decode", "weights", "draw", "encode", "write"};
+
+/// Seconds of each stage, of all pictures together. Any thread may add.
+class Timings {
+  public:
+    /// Runs `work` and counts it to the stage.
+    template <class Work>
+    auto measure(Stage stage, const Work& work) {
+        const Watch watch{*this, stage};
+        return work();
+    }
+
+    /// To standard error, a line for each stage and one for all, which is less where stages overlapped.
+    void print() const {
+        const auto line = [](std::string_view name, double seconds) {
+            std::fprintf(stderr, "timings: %.*s %.3f s\n", int(name.size()), name.data(), seconds);
+        };
+        for (std::size_t i = 0; i < stage_names.size(); ++i) line(stage_names[i], seconds_[i]);
+        line("in all", seconds_since(start_));
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    static double seconds_since(Clock::time_point start) {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    }
+
+    struct Watch {
+        Timings& timings;
+        Stage stage;
+        Clock::time_point start = Clock::now();
+
+        ~Watch() {
+            const double seconds = seconds_since(start);
+            const std::lock_guard lock(timings.mutex_);
+            timings.seconds_[std::size_t(stage)] += seconds;
+        }
+    };
+
+    Clock::time_point start_ = Clock::now();
+    std::mutex mutex_;
+    std::array<double, stage_names.size()> seconds_{};
+};
+
+}  // namespace probewarp
