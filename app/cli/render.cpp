@@ -8,6 +8,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/drawing.h"
+#include "cli/render_many.h"
 #include "cli/timings.h"
 #include "io/file.h"
 #include "io/image_file.h"
@@ -139,6 +140,11 @@ void render_picture(const RenderOptions& o, const ImageFormat& format, const Doc
 }
 
 void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
+    if (o.images.size() > 1)
+        throw UsageError(
+            fmt::format("-o {}: one file for {} pictures; expected {{name}} in it, such as "
+                        "DIR/{{name}}.png",
+                        o.output, o.images.size()));
     const Document document =
         timings.measure(Stage::decode, [&] { return posed_on(read_document(o.input), other_picture(o), o); });
     check_deform(o, document);
@@ -153,16 +159,34 @@ void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
     write_output(o.output, std::as_bytes(std::span(text)));
 }
 
+/// `--image A B C`: what would be wrong with every one of them is said before the first.
+int render_all(const RenderOptions& o, OutputFormat format, Timings& timings) {
+    if (format.kind != Kind::image)
+        throw UsageError(
+            fmt::format("-o {}: expected a picture's format for --image with {{name}}", o.output));
+    const Document base = read_document(o.input);
+    const Document posed = posed_on(base, nullptr, o);
+    check_deform(o, posed);
+    check_heat(o, format.kind, posed);
+    return render_many(
+        plan_of(o, *format.image), base,
+        [&o](const Document& on, PicturePtr picture) { return posed_on(on, std::move(picture), o); },
+        timings);
+}
+
 }  // namespace
 
 int render(const RenderOptions& o) {
     Timings timings;
     const OutputFormat format = output_format(o);
     export_settings(o);  // throws where they cannot be understood
-    if (o.images.size() > 1) throw UsageError("--image: one picture at a time");
-    render_one(o, format, timings);
+    int code = 0;
+    if (is_many(o))
+        code = render_all(o, format, timings);
+    else
+        render_one(o, format, timings);
     if (o.timings) timings.print();
-    return 0;
+    return code;
 }
 
 }  // namespace probewarp
