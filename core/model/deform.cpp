@@ -4,8 +4,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "math/planar_blend.h"
+#include "model/deform_tiles.h"
 
 namespace probewarp {
 
@@ -38,12 +40,40 @@ std::size_t deform_by(std::span<const glm::vec2> rest, std::span<const float> we
     return cancelled;
 }
 
+/// The place of the largest |w_i|, the first of equals.
+std::size_t heaviest_of(const float* weights, std::size_t stride, std::size_t probes) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < probes; ++i)
+        if (std::abs(weights[i * stride]) > std::abs(weights[best * stride])) best = i;
+    return best;
+}
+
 }  // namespace
+
+MovedVertex dlb_vertex(const float* weights, std::size_t stride, const Pose& pose, glm::vec2 rest) {
+    float a = 0, b = 0, c = 0, d = 0, total = 0;
+    const float* w = weights;
+    for (const auto& p : pose.transformations) {
+        a += *w * p.p0.real();
+        b += *w * p.p0.imag();
+        c += *w * p.p1.real();
+        d += *w * p.p1.imag();
+        total += std::abs(*w);
+        w += stride;
+    }
+    const float least = cancelled_share<float> * total;
+    // The last is for weights so small that a float does not hold their squares.
+    const bool cancelled = !(a * a + b * b >= std::max(least * least, std::numeric_limits<float>::min()));
+    if (cancelled) {
+        const auto& p = pose.transformations[heaviest_of(weights, stride, pose.transformations.size())];
+        a = p.p0.real(), b = p.p0.imag(), c = p.p1.real(), d = p.p1.imag();
+    }
+    return {rest + displacement(a, b, c, d, rest - pose.centre), cancelled};
+}
 
 std::size_t deform_dlb(std::span<const glm::vec2> rest, std::span<const float> weights, const Pose& pose,
                        std::span<glm::vec2> now) {
-    const std::span transformations = pose.transformations;
-    const std::size_t probes = transformations.size();
+    const std::size_t probes = pose.transformations.size();
     assert(now.size() == rest.size() && weights.size() == rest.size() * probes);
     if (probes == 0) {
         std::copy(rest.begin(), rest.end(), now.begin());
@@ -51,23 +81,9 @@ std::size_t deform_dlb(std::span<const glm::vec2> rest, std::span<const float> w
     }
     std::size_t cancelled = 0;
     for (std::size_t v = 0; v < rest.size(); ++v) {
-        const float* w = weights.data() + v * probes;
-        float a = 0, b = 0, c = 0, d = 0, total = 0;
-        for (std::size_t i = 0; i < probes; ++i) {
-            const auto& p = transformations[i];
-            a += w[i] * p.p0.real();
-            b += w[i] * p.p0.imag();
-            c += w[i] * p.p1.real();
-            d += w[i] * p.p1.imag();
-            total += std::abs(w[i]);
-        }
-        const float least = cancelled_share<float> * total;
-        if (!(a * a + b * b >= least * least)) {
-            const auto& p = transformations[heaviest(std::span(w, probes))];
-            a = p.p0.real(), b = p.p0.imag(), c = p.p1.real(), d = p.p1.imag();
-            ++cancelled;
-        }
-        now[v] = rest[v] + displacement(a, b, c, d, rest[v] - pose.centre);
+        const MovedVertex moved = dlb_vertex(weights.data() + v * probes, 1, pose, rest[v]);
+        now[v] = moved.now;
+        cancelled += moved.cancelled;
     }
     return cancelled;
 }
@@ -76,28 +92,28 @@ std::span<const BlendMethod> blend_methods() {
     static constexpr std::array<BlendMethod, 8> methods{{
         {"dlb", "DLB, as turned",
          "The usual choice: quick, rigid, and each probe turns the picture the way it was turned itself.",
-         &deform_dlb, &planar_dlb},
+         &deform_dlb, &deform_dlb, &planar_dlb},
         {"dlb-shortest", "DLB, shortest way",
          "When only matters where a probe points, not how it got there: turns go the short way round.",
-         &deform_by<planar_dlb_shortest>, &planar_dlb_shortest},
+         &deform_by<planar_dlb_shortest>, nullptr, &planar_dlb_shortest},
         {"dib", "DIB, the exact mean",
          "When a turn is to spread evenly between probes: the exact mean of their motions; not for whole "
          "turns.",
-         &deform_by<planar_dib>, &planar_dib},
+         &deform_by<planar_dib>, nullptr, &planar_dib},
         {"log-linear", "Logarithm at the centre",
          "When the picture is to swirl about its own centre; probes' whole turns are beyond it.",
-         &deform_by<planar_log_linear>, &planar_log_linear},
+         &deform_by<planar_log_linear>, nullptr, &planar_log_linear},
         {"spiral", "Spiral", "For twirls: any number of turns, spread evenly with the weights.",
-         &deform_by<spiral>, &spiral},
+         &deform_by<spiral>, nullptr, &spiral},
         {"linear", "Linear",
          "To match programs that blend matrices: what lies between probes turned apart shrinks.",
-         &deform_by<planar_linear>, &planar_linear},
+         &deform_by<planar_linear>, nullptr, &planar_linear},
         {"mls-rigid", "Moving least squares, rigid",
          "When probes are dragged, not turned: how they moved to each other turns the picture.",
-         &deform_by<mls_rigid>, &mls_rigid},
+         &deform_by<mls_rigid>, nullptr, &mls_rigid},
         {"mls-similarity", "Moving least squares, similar",
          "The same, and what probes are pulled apart from each other grows.", &deform_by<mls_similarity>,
-         &mls_similarity},
+         nullptr, &mls_similarity},
     }};
     return methods;
 }

@@ -9,6 +9,7 @@
 
 #include "math/dual_complex.h"
 #include "math/motion.h"
+#include "model/weight_tiles.h"
 
 namespace probewarp {
 
@@ -26,11 +27,18 @@ struct Pose {
 using DeformFunction = std::size_t (*)(std::span<const glm::vec2> rest, std::span<const float> weights,
                                        const Pose& pose, std::span<glm::vec2> now);
 
+/// The same for a run of vertices and those of the blocks that it touches: it counts the vertices of all of
+/// these for which there is no answer. Each comes out the same whatever the run is, and as from the function
+/// above but for rounding. rest, now: #vertices of the mesh; now may not be rest
+using DeformTilesFunction = std::size_t (*)(const WeightTiles& tiles, std::span<const glm::vec2> rest,
+                                            const Pose& pose, VertexRun run, std::span<glm::vec2> now);
+
 struct BlendMethod {
     std::string_view name;   ///< what the command line and the project file call it
     std::string_view label;  ///< what the window calls it
     std::string_view when;   ///< one sentence: when to use it
     DeformFunction deform;
+    DeformTilesFunction deform_tiles;  ///< by vector units; null: there is none
     /// The blend itself at one place, in double: #probes weights and motions in, the map of the plane out.
     Similarity<double> (*blend)(std::span<const double> weights, std::span<const Motion<double>> motions);
 };
@@ -41,9 +49,18 @@ std::span<const BlendMethod> blend_methods();
 /// The method of that name, or null.
 const BlendMethod* find_blend_method(std::string_view name);
 
+struct MovedVertex {
+    glm::vec2 now{0};        ///< image pixels
+    bool cancelled = false;  ///< the blend has no answer: the heaviest probe was followed
+};
+
+/// One vertex by DLB, as deform_dlb. weights: #probes, `stride` floats apart
+MovedVertex dlb_vertex(const float* weights, std::size_t stride, const Pose& pose, glm::vec2 rest);
+
 /// Deforms by DLB without a square root: with s = sum w_i p_i the vertex moves by 2 s0 (i Im(s0) v + s1) /
 /// |s0|^2, which is (s0^2 v + 2 s0 s1) / |s0|^2 - v, written so that it is exactly 0 where no probe moved.
-/// No answer where |s0| is below cancelled_share of the weights' sum.
+/// No answer where |s0| is below cancelled_share of the weights' sum. The plain function: deform_tiles.h has
+/// the quick one.
 std::size_t deform_dlb(std::span<const glm::vec2> rest, std::span<const float> weights, const Pose& pose,
                        std::span<glm::vec2> now);
 

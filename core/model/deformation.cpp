@@ -44,13 +44,22 @@ Pose pose_of(const Deformation& d, const Document& document) {
     return {d.motions, d.transformations, glm::vec2(centre(document.picture->image))};
 }
 
-/// Moves one run of vertices; returns for how many the blend has no answer.
+/// Moves one run of vertices, or a few more about it; returns for how many of all these the blend has no
+/// answer. now: #vertices of the mesh
+std::size_t deform_run(const Deformation& d, const Document& document, const BlendMethod& blend,
+                       VertexRun run, std::span<glm::vec2> now) {
+    const std::span<const glm::vec2> rest = mesh_of(d).rest;
+    const Pose pose = pose_of(d, document);
+    if (blend.deform_tiles && !d.quick.tiles.rows.empty())
+        return blend.deform_tiles(d.quick.tiles, rest, pose, run, now);
+    const std::size_t probes = d.motions.size();
+    return blend.deform(rest.subspan(run.first, run.count),
+                        weights_of(d).subspan(run.first * probes, run.count * probes), pose,
+                        now.subspan(run.first, run.count));
+}
+
 std::size_t deform_run(Deformation& d, const Document& document, VertexRun run) {
-    const std::size_t probes = document.probes.size();
-    return find_blend_method(document.blend)
-        ->deform(std::span(mesh_of(d).rest).subspan(run.first, run.count),
-                 weights_of(d).subspan(run.first * probes, run.count * probes), pose_of(d, document),
-                 std::span(d.now).subspan(run.first, run.count));
+    return deform_run(d, document, *find_blend_method(document.blend), run, d.now);
 }
 
 /// Works out the weights of some vertices anew, and where these go; the others must be where they belong.
@@ -58,20 +67,28 @@ void refine_runs(Deformation& d, const Document& document, std::span<const Verte
     const std::size_t probes = document.probes.size();
     for (const VertexRun run : runs) {
         d.cancelled -= deform_run(d, document, run);
-        settle_run(document, *d.binding, run,
-                   std::span(d.refined).subspan(run.first * probes, run.count * probes));
+        const auto weights = std::span(d.refined).subspan(run.first * probes, run.count * probes);
+        settle_run(document, *d.binding, run, weights);
+        put(d.quick.tiles, run, weights);
         d.cancelled += deform_run(d, document, run);
     }
 }
 
 /// Works all weights out, as far as they may differ from those of `d.source`.
-void refine(Deformation& d, const Document& document, bool rebound) {
+void refine_all(Deformation& d, const Document& document, bool rebound) {
     const bool same = !rebound && d.source.weights.most == document.weights.most &&
                       d.source.stiffness == document.stiffness && same_locks(d.source, document);
-    if (!is_refined(document))
-        d.refined = {};
-    else if (!same || d.refined.empty() || !repainted(d.source, document, mesh_of(d)).empty())
-        d.refined = refined_weights(document, *d.binding);
+    const bool refined = is_refined(document);
+    if (!rebound && !refined && d.refined.empty()) return;
+    if (refined && same && !d.refined.empty() && repainted(d.source, document, mesh_of(d)).empty()) return;
+    d.refined = refined ? refined_weights(document, *d.binding) : std::vector<float>();
+    d.quick = {};
+}
+
+/// Makes sure of the tiles, where there are weights.
+void tile(Deformation& d) {
+    if (d.quick.tiles.rows.empty() && !d.motions.empty())
+        d.quick.tiles = make_tiles(weights_of(d), d.motions.size());
 }
 
 std::vector<Motion<double>> motions_of(const Document& document) {
@@ -97,10 +114,12 @@ void pose(Deformation& d, const Document& document, std::shared_ptr<const Bindin
     for (const auto& motion : d.motions) d.transformations.push_back(cast<float>(motion.p));
     d.now.resize(mesh_of(d).rest.size());
     if (in_runs) {
+        tile(d);
         if (d.refined.empty()) d.refined = d.binding->automatic;
         refine_runs(d, document, changed_runs(d.source, document, mesh_of(d)));
     } else {
-        refine(d, document, rebound);
+        refine_all(d, document, rebound);
+        tile(d);
         d.cancelled = deform_run(d, document, {0, d.now.size()});
     }
     d.moved = !std::all_of(document.probes.begin(), document.probes.end(), at_rest);
@@ -116,8 +135,7 @@ void update(Deformation& deformation, const Document& document) {
 
 std::vector<glm::vec2> positions_by(const Deformation& deformation, const BlendMethod& blend) {
     std::vector<glm::vec2> positions(mesh_of(deformation).rest.size());
-    blend.deform(mesh_of(deformation).rest, weights_of(deformation), pose_of(deformation, deformation.source),
-                 positions);
+    deform_run(deformation, deformation.source, blend, {0, positions.size()}, positions);
     return positions;
 }
 

@@ -8,8 +8,20 @@
 #include <vector>
 
 #include "model/binding.h"
+#include "model/weight_tiles.h"
 
 namespace probewarp {
+
+/// What a deformation keeps to be quick. As large as the weights, so a copy goes without and makes its own.
+struct Quick {
+    WeightTiles tiles;  ///< the weights that deform; without rows: to be made
+
+    Quick() = default;
+    Quick(Quick&&) = default;
+    Quick(const Quick&) {}
+    Quick& operator=(Quick&&) = default;
+    Quick& operator=(const Quick&) { return *this = Quick(); }
+};
 
 struct Deformation {
     std::shared_ptr<const Binding> binding;  ///< null before the first update
@@ -24,6 +36,7 @@ struct Deformation {
     Document source;                                  ///< what all of this was worked out from
     unsigned long mesh_version = 0;                   ///< grows with every new mesh
     unsigned long version = 0;                        ///< grows with every change
+    Quick quick;
 };
 
 const Mesh& mesh_of(const Deformation& deformation);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -46,6 +47,11 @@ struct Mesh {
     std::vector<std::uint32_t> grid;
     /// #probes: the vertex at each probe's rest; no_vertex for a probe that is not on the mesh.
     std::vector<std::uint32_t> anchors;
+};
+
+/// Vertices [first, first + count) of a mesh.
+struct VertexRun {
+    std::size_t first = 0, count = 0;
 };
 
 /// Cells along x and y: `cells` along the longer side, max(1, round(cells short / long)) along the shorter.

@@ -16,11 +16,6 @@ bool is_limited(const Document& document);
 /// Whether anything refines the document's automatic weights; else they deform as they are.
 bool is_refined(const Document& document);
 
-/// Vertices [first, first + count) of a mesh.
-struct VertexRun {
-    std::size_t first = 0, count = 0;
-};
-
 /// The vertices whose refined weights may differ between the two documents, which differ in nothing but their
 /// probes' paint (and in what does not touch the weights): runs in the vertices' order.
 std::vector<VertexRun> repainted(const Document& before, const Document& after, const Mesh& mesh);

@@ -154,10 +154,11 @@ TEST(Deform, MayWriteOverItsInput) {
     add_probe(document, {100, 100}, {150, 90}, 0.5);
     add_probe(document, {400, 300}, {410, 330}, -1);
     const Deformation deformation = deformed(document);
-    std::vector<glm::vec2> vertices = mesh_of(deformation).rest;
-    deform_dlb(vertices, weights_of(deformation),
-               {deformation.motions, deformation.transformations, {320, 240}}, vertices);
-    EXPECT_EQ(vertices, deformation.now);
+    const Pose pose{deformation.motions, deformation.transformations, {320, 240}};
+    std::vector<glm::vec2> vertices = mesh_of(deformation).rest, beside(vertices.size());
+    deform_dlb(vertices, weights_of(deformation), pose, beside);
+    deform_dlb(vertices, weights_of(deformation), pose, vertices);
+    EXPECT_EQ(vertices, beside);
 }
 
 /// Probes at the left and the right edge, the second or the first turned once round and moved to the right.

@@ -1,0 +1,40 @@
+// The weights once more, in the order in which vector units want them: tiles of 16 vertices, read from the
+// first to the last as one stream.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "model/mesh.h"
+
+namespace probewarp {
+
+inline constexpr std::size_t tile_width = 16;
+/// What is deformed in one go: two vectors of the widest units there are.
+inline constexpr std::size_t tile_block = 2 * tile_width;
+
+/// One probe's weights at the 16 vertices of a tile: a cache line.
+struct alignas(64) TileRow {
+    std::array<float, tile_width> weights{};
+};
+
+struct WeightTiles {
+    std::size_t vertices = 0, probes = 0;
+    /// #tiles x #probes; the tiles fill whole blocks. A vertex that the mesh does not have follows the first
+    /// probe alone, so that its blend has an answer.
+    std::vector<TileRow> rows;
+    float largest_sum = 0;  ///< no vertex's weights have a larger sum of |w_i|
+};
+
+/// Weights of one vertex: #probes, `tile_width` apart.
+const float* column(const WeightTiles& tiles, std::size_t vertex);
+
+/// weights: #vertices x #probes, row-major, at least one probe
+WeightTiles make_tiles(std::span<const float> weights, std::size_t probes);
+
+/// Takes over one run of vertices. weights: run.count x #probes, row-major
+void put(WeightTiles& tiles, VertexRun run, std::span<const float> weights);
+
+}  // namespace probewarp

@@ -1,0 +1,233 @@
+// The deformation by vector units against the plain function, with every instruction set that this machine
+// has.
+#include "model/deform_tiles.h"
+
+#include <hwy/targets.h>
+
+#include <cstring>
+#include <random>
+#include <set>
+
+#include "generators.h"
+#include "math/blend.h"
+#include "model/deformation.h"
+#include "pictures.h"
+
+namespace probewarp {
+namespace {
+
+using testing::add_probe;
+using testing::angle;
+using testing::blank_document;
+using testing::degrees;
+using testing::expect_always;
+using testing::real;
+using testing::whole;
+
+/// Runs `check` with each instruction set in turn.
+template <class Check>
+void with_every_target(Check check) {
+    std::set<std::string> names;
+    for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        EXPECT_STREQ(deform_target(), hwy::TargetName(target));
+        names.insert(deform_target());
+        check();
+        hwy::SetSupportedTargetsForTest(0);
+    }
+    EXPECT_TRUE(names.contains(hwy::TargetName(HWY_STATIC_TARGET)));  // what any machine has
+}
+
+/// Some vertices, their weights, and what moves them; values as the meshes and schemes give them.
+struct Scene {
+    std::vector<glm::vec2> rest;
+    std::vector<float> weights;
+    std::vector<Motion<double>> motions;
+    std::vector<DualComplex<float>> transformations;
+    glm::vec2 centre{4096, 2500};
+
+    std::size_t probes() const { return motions.size(); }
+    Pose pose() const { return {motions, transformations, centre}; }
+    void add(const Motion<double>& motion) {
+        motions.push_back(motion);
+        transformations.push_back(cast<float>(motion.p));
+    }
+};
+
+Scene any_scene(int vertices, int probes, double turns) {
+    Scene scene;
+    std::mt19937 random(unsigned(*whole(0, 1 << 30)));
+    std::uniform_real_distribution<double> place(0, 8192), way(-1000, 1000), share(0, 1);
+    for (int v = 0; v < vertices; ++v) scene.rest.push_back({place(random), place(random)});
+    for (int v = 0; v < vertices * probes; ++v)
+        scene.weights.push_back(share(random) < 0.2 ? 0.0f : float(std::pow(share(random), 4)));
+    for (int v = 0; v < vertices; ++v)  // one of each row is 1
+        scene.weights[std::size_t(v * probes + int(random() % unsigned(probes)))] = 1;
+    for (int i = 0; i < probes; ++i) {
+        const std::complex<double> rest(place(random) - 4096, place(random) - 2500);
+        scene.add(motion(*angle(turns), rest, rest + std::complex<double>(way(random), way(random))));
+    }
+    return scene;
+}
+
+struct Moved {
+    std::vector<glm::vec2> now;
+    std::size_t cancelled = 0;
+    friend bool operator==(const Moved&, const Moved&) = default;
+};
+
+Moved plainly(const Scene& scene) {
+    Moved moved{scene.rest, 0};
+    moved.cancelled = deform_dlb(scene.rest, scene.weights, scene.pose(), moved.now);
+    return moved;
+}
+
+Moved by_tiles(const Scene& scene) {
+    Moved moved{std::vector<glm::vec2>(scene.rest.size()), 0};
+    moved.cancelled = deform_dlb(make_tiles(scene.weights, scene.probes()), scene.rest, scene.pose(),
+                                 {0, scene.rest.size()}, moved.now);
+    return moved;
+}
+
+double apart(glm::dvec2 a, glm::dvec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+/// |s0| / sum w of one vertex, in double.
+double share_of(const Scene& scene, std::size_t vertex) {
+    std::complex<double> s0;
+    double total = 0;
+    for (std::size_t i = 0; i < scene.probes(); ++i) {
+        const double w = double(scene.weights[vertex * scene.probes() + i]);
+        s0 += w * scene.motions[i].p.p0;
+        total += w;
+    }
+    return std::abs(s0) / total;
+}
+
+TEST(DeformTiles, IsThePlainFunctionUpToRounding) {
+    with_every_target([] {
+        expect_always("any number of vertices, 1 to 70 probes, many turns", [] {
+            const Scene scene = any_scene(*whole(1, 200), *whole(1, 70), 5);
+            const Moved plain = plainly(scene), quick = by_tiles(scene);
+            RC_ASSERT(quick.cancelled == plain.cancelled);
+            for (std::size_t v = 0; v < scene.rest.size(); ++v) {
+                // As for Deform's own test: floats of up to 8192 pixels, their rounding magnified where the
+                // sum is short, twice four times over.
+                const double share = share_of(scene, v);
+                const double allowed = std::max(0.01, 8192 * 0x1p-21 / (share * share));
+                RC_ASSERT(apart(plain.now[v], quick.now[v]) <= allowed);
+            }
+        });
+    });
+}
+
+TEST(DeformTiles, LeavesEveryVertexExactlyWhereNoProbeMoved) {
+    with_every_target([] {
+        expect_always("now = rest, in every bit", [] {
+            Scene scene = any_scene(*whole(1, 100), *whole(1, 40), 1);
+            const std::size_t probes = scene.probes();
+            scene.motions.clear(), scene.transformations.clear();
+            for (std::size_t i = 0; i < probes; ++i) scene.add(motion<double>(0, {3, 4}, {3, 4}));
+            const Moved moved = by_tiles(scene);
+            RC_ASSERT(std::memcmp(moved.now.data(), scene.rest.data(), scene.rest.size() * 8) == 0);
+            RC_ASSERT(moved.cancelled == 0u);
+        });
+    });
+}
+
+TEST(DeformTiles, CancelledVerticesFollowTheHeaviestAsInThePlainFunction) {
+    with_every_target([] {
+        expect_always("a whole turn against none, equal weights or nearly", [] {
+            Scene scene = any_scene(*whole(1, 100), 3, 0);
+            scene.motions.clear(), scene.transformations.clear();
+            scene.add(motion<double>(0, {-500, 20}, {-490, 20}));
+            scene.add(motion<double>(360 * degrees, {500, 20}, {530, 20}));
+            scene.add(motion<double>(1, {0, 0}, {1, 1}));
+            for (std::size_t v = 0; v < scene.rest.size(); ++v) {
+                float* w = &scene.weights[3 * v];
+                // Shares of 0, 5e-8 and 2.5e-7, below the threshold; 1e-5 and more, above it by as much.
+                const float lacks[] = {0, 1e-7f, 5e-7f, 2e-5f, 0.5f};
+                const float scale = *rc::gen::element(1.0f, 0.01f);
+                w[0] = w[1] = scale, w[2] = 0;
+                w[*whole(0, 1)] -= scale * lacks[*whole(0, 4)];
+            }
+            const Moved plain = plainly(scene), quick = by_tiles(scene);
+            RC_ASSERT(quick.cancelled == plain.cancelled);
+            for (std::size_t v = 0; v < scene.rest.size(); ++v) {
+                RC_ASSERT(std::isfinite(quick.now[v].x) && std::isfinite(quick.now[v].y));
+                if (share_of(scene, v) < 1e-6) RC_ASSERT(plain.now[v] == quick.now[v]);
+            }
+        });
+    });
+}
+
+TEST(DeformTiles, IsNeverNotANumber) {
+    Scene scene;
+    scene.centre = glm::vec2(0);
+    scene.add(motion<double>(0, 0, 5));
+    scene.add(motion<double>(360 * degrees, 0, 7));
+    for (const float w : {0.0f, 1e-30f, 1e-20f, 1.0f, 1e15f})
+        for (int v = 0; v < 9; ++v) {
+            scene.rest.push_back({v, 2 * v});
+            scene.weights.insert(scene.weights.end(), {w, v % 2 ? w : 0});
+        }
+    with_every_target([&] {
+        for (const glm::vec2 now : by_tiles(scene).now)
+            EXPECT_TRUE(std::isfinite(now.x) && std::isfinite(now.y));
+    });
+}
+
+TEST(DeformTiles, ARunIsDeformedAsTheWhole) {
+    with_every_target([] {
+        expect_always("the run's vertices anew, the others within its blocks alike, none beyond", [] {
+            const int vertices = *whole(1, 150);
+            Scene scene = any_scene(vertices, *whole(1, 9), 2);
+            const std::size_t first = std::size_t(*whole(0, vertices - 1));
+            const std::size_t count = std::size_t(*whole(0, vertices - int(first)));
+            const WeightTiles tiles = make_tiles(scene.weights, scene.probes());
+            const Moved whole_mesh = by_tiles(scene);
+            std::vector<glm::vec2> now(scene.rest.size(), glm::vec2(-7));
+            deform_dlb(tiles, scene.rest, scene.pose(), {first, count}, now);
+            for (std::size_t v = 0; v < now.size(); ++v) {
+                const bool in_run = v >= first && v < first + count;
+                const bool untouched = !in_run && now[v] == glm::vec2(-7);
+                RC_ASSERT(untouched || now[v] == whole_mesh.now[v]);
+                if (count == 0 || v + tile_block < first || v >= first + count + tile_block)
+                    RC_ASSERT(untouched);
+            }
+        });
+    });
+}
+
+TEST(WeightTiles, HoldEveryWeightAndTakeOverRuns) {
+    expect_always("made at once or run by run", [] {
+        const Scene before = any_scene(*whole(1, 100), 5, 0);
+        Scene after = before;
+        WeightTiles tiles = make_tiles(before.weights, 5);
+        const std::size_t first = std::size_t(*whole(0, int(before.rest.size()) - 1));
+        const std::size_t count = before.rest.size() - first;
+        for (std::size_t k = 5 * first; k < after.weights.size(); ++k) after.weights[k] *= 0.5f;
+        put(tiles, {first, count}, std::span(after.weights).subspan(5 * first));
+        for (std::size_t v = 0; v < before.rest.size(); ++v)
+            for (std::size_t i = 0; i < 5; ++i)
+                RC_ASSERT(column(tiles, v)[i * tile_width] == after.weights[5 * v + i]);
+        const std::size_t all = tiles.rows.size() / 5 * tile_width;
+        RC_ASSERT(all % tile_block == 0 && all >= before.rest.size() &&
+                  all < before.rest.size() + tile_block);
+        RC_ASSERT(tiles.vertices == before.rest.size() && tiles.probes == 5u);
+    });
+}
+
+TEST(Deformation, ACopyDeformsOn) {
+    Document document = blank_document(640, 480, 10);
+    add_probe(document, {100, 100}, {150, 90}, 0.5);
+    add_probe(document, {400, 300}, {410, 330}, -1);
+    Deformation first;
+    update(first, document);
+    Deformation copy = first;
+    document.probes[0].angle = 2;
+    update(first, document), update(copy, document);
+    EXPECT_EQ(first.now, copy.now);
+}
+
+}  // namespace
+}  // namespace probewarp
