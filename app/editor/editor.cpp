@@ -37,12 +37,13 @@ void start(Editor& editor, Document document, std::filesystem::path path, bool s
 void refresh(Editor& editor) {
     if (!has_picture(editor) || defers_deformation(editor)) return;
     auto& deformation = editor.deformation;
-    if (!editor.binds_elsewhere) return update(deformation, editor.document);
+    const Pace pace = editor.gesture ? Pace::dragging : Pace::settled;
+    if (!editor.binds_elsewhere) return update(deformation, editor.document, pace);
     const bool strokes =
         editor.gesture && editor.gesture->stroke;  // a stroke keeps the mesh that it began on
     auto binding = strokes ? nullptr : std::exchange(editor.next_binding, nullptr);
     if (!fits(binding.get(), editor.document)) binding = deformation.binding;
-    if (fits(binding.get(), editor.document)) pose(deformation, editor.document, std::move(binding));
+    if (fits(binding.get(), editor.document)) pose(deformation, editor.document, std::move(binding), pace);
 }
 
 bool is_deformed(const Editor& editor) {

@@ -7,11 +7,17 @@
 #include <limits>
 
 #include "math/blend.h"
+#include "model/over_blocks.h"
 
 #ifndef PROBEWARP_DEFORM_TILES_ONCE
 #define PROBEWARP_DEFORM_TILES_ONCE
 namespace probewarp {
 namespace {
+
+template <class Sum>  // OthersSum, const or not
+auto others_at(Sum& others, std::size_t vertex) {
+    return others.values.data() + vertex / tile_width * 5 * tile_width + vertex % tile_width;
+}
 
 /// The few vertices that may be cancelled are looked at one by one, and decided as deform_dlb does. The
 /// others keep what the vectors said, but where rounding left nothing to divide by. rest, now: run.count
@@ -47,8 +53,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<float, tile_width>;
 using Vector = hn::Vec<Tag>;
 
-/// How far ahead of the sums the weights are fetched: 2 KB, the middle of the 1 to 4 KB that serve alike.
-constexpr std::size_t floats_ahead = 512;
+/// How far ahead of the sums the weights are fetched: 8 KB. Less leaves a tenth of the memory's speed unused
+/// on machines with much memory far away; more serves alike up to 16 KB.
+constexpr std::size_t floats_ahead = 2048;
 
 /// Moves a vector of vertices by 2 s0 (i Im(s0) v + s1) / |s0|^2 with s0 = a + ib and s1 = c + id. Whether
 /// |s0|^2 > least at all of them; only there is the result of use. rest, now: x and y in turns
@@ -67,51 +74,114 @@ HWY_INLINE bool Move(Vector a, Vector b, Vector c, Vector d, glm::vec2 centre, f
     return hn::AllTrue(tag, hn::Gt(size, hn::Set(tag, least)));
 }
 
-/// Moves two vectors of vertices, the first of them `v`; the arrays begin there. Whether both could be.
-HWY_INLINE bool MoveTwo(const WeightTiles& tiles, const Pose& pose, float least, std::size_t v,
-                        const glm::vec2* rest, glm::vec2* now) {
+/// What Move takes, for two vectors of vertices.
+struct Sums {
+    Vector a, b, c, d, a2, b2, c2, d2;
+};
+
+/// s0 = a + ib and s1 = c + id of two vectors of vertices, the first of them `v`.
+HWY_INLINE Sums SumTwo(const WeightTiles& tiles, std::span<const DualComplex<float>> p, std::size_t v) {
     const Tag tag;
     const std::size_t lanes = hn::Lanes(tag);
     const float *first = column(tiles, v), *second = column(tiles, v + lanes);
     Vector a = hn::Zero(tag), b = a, c = a, d = a, a2 = a, b2 = a, c2 = a, d2 = a;
-    for (const auto& p : pose.transformations) {
+    for (const auto& [p0, p1] : p) {
         hwy::Prefetch(first + floats_ahead);
         if (lanes == tile_width) hwy::Prefetch(second + floats_ahead);
         const Vector w = hn::Load(tag, first), w2 = hn::Load(tag, second);
-        const Vector re = hn::Set(tag, p.p0.real()), im = hn::Set(tag, p.p0.imag());
-        const Vector re1 = hn::Set(tag, p.p1.real()), im1 = hn::Set(tag, p.p1.imag());
-        a = hn::MulAdd(w, re, a), a2 = hn::MulAdd(w2, re, a2);
-        b = hn::MulAdd(w, im, b), b2 = hn::MulAdd(w2, im, b2);
+        const Vector re0 = hn::Set(tag, p0.real()), im0 = hn::Set(tag, p0.imag());
+        const Vector re1 = hn::Set(tag, p1.real()), im1 = hn::Set(tag, p1.imag());
+        a = hn::MulAdd(w, re0, a), a2 = hn::MulAdd(w2, re0, a2);
+        b = hn::MulAdd(w, im0, b), b2 = hn::MulAdd(w2, im0, b2);
         c = hn::MulAdd(w, re1, c), c2 = hn::MulAdd(w2, re1, c2);
         d = hn::MulAdd(w, im1, d), d2 = hn::MulAdd(w2, im1, d2);
         first += tile_width, second += tile_width;
     }
-    const bool one = Move(a, b, c, d, pose.centre, least, &rest->x, &now->x);
-    const bool other = Move(a2, b2, c2, d2, pose.centre, least, &rest[lanes].x, &now[lanes].x);
-    return one && other;
+    return {a, b, c, d, a2, b2, c2, d2};
 }
 
-/// Two vectors of vertices, the first of them `v`; returns how many are cancelled.
-HWY_INLINE std::size_t SettleTwo(const WeightTiles& tiles, const Pose& pose, float least, std::size_t v,
-                                 const glm::vec2* rest, glm::vec2* now) {
-    if (HWY_LIKELY(MoveTwo(tiles, pose, least, v, rest, now))) return 0;
-    return settle_cancelled(tiles, pose, {v, 2 * hn::Lanes(Tag())}, rest, now);
+/// What the sums of all probes are taken from.
+struct AllProbes {
+    const WeightTiles& tiles;
+    std::span<const DualComplex<float>> p;
+
+    HWY_INLINE Sums operator()(std::size_t v) const { return SumTwo(tiles, p, v); }
+};
+
+/// What they are taken from while one probe is dragged: what the others add up to, and its own part.
+struct OneProbe {
+    const OthersSum& others;
+    const DualComplex<float>& p;
+
+    HWY_INLINE Vector Part(const float* at, std::size_t row, Vector w, float x) const {
+        return hn::MulAdd(w, hn::Set(Tag(), x), hn::Load(Tag(), at + row * tile_width));
+    }
+    HWY_INLINE Sums operator()(std::size_t v) const {
+        const float *at = others_at(others, v), *at2 = others_at(others, v + hn::Lanes(Tag()));
+        const Vector w = hn::Load(Tag(), at + 4 * tile_width), w2 = hn::Load(Tag(), at2 + 4 * tile_width);
+        return {Part(at, 0, w, p.p0.real()),   Part(at, 1, w, p.p0.imag()),   Part(at, 2, w, p.p1.real()),
+                Part(at, 3, w, p.p1.imag()),   Part(at2, 0, w2, p.p0.real()), Part(at2, 1, w2, p.p0.imag()),
+                Part(at2, 2, w2, p.p1.real()), Part(at2, 3, w2, p.p1.imag())};
+    }
+};
+
+/// Moves two vectors of vertices, the first of them `v`; returns how many are cancelled. rest, now: begin at
+/// v
+template <class SumsAt>
+HWY_INLINE std::size_t MoveTwo(const WeightTiles& tiles, const Pose& pose, const SumsAt& sums_at, float least,
+                               std::size_t v, const glm::vec2* rest, glm::vec2* now) {
+    const std::size_t lanes = hn::Lanes(Tag());
+    const Sums s = sums_at(v);
+    const bool one = Move(s.a, s.b, s.c, s.d, pose.centre, least, &rest->x, &now->x);
+    const bool other = Move(s.a2, s.b2, s.c2, s.d2, pose.centre, least, &rest[lanes].x, &now[lanes].x);
+    if (HWY_LIKELY(one && other)) return 0;
+    return settle_cancelled(tiles, pose, {v, 2 * lanes}, rest, now);
 }
 
-std::size_t DeformRun(const WeightTiles& tiles, const Pose& pose, VertexRun run, const glm::vec2* rest,
-                      glm::vec2* now) {
+template <class SumsAt>
+HWY_INLINE std::size_t MoveRun(const WeightTiles& tiles, const Pose& pose, const SumsAt& sums_at,
+                               VertexRun run, const glm::vec2* rest, glm::vec2* now) {
     const std::size_t step = 2 * hn::Lanes(Tag()), end = run.first + run.count;
     const float share = cancelled_share<float> * tiles.largest_sum;
     const float least = std::max(share * share, std::numeric_limits<float>::min());
     std::size_t cancelled = 0, v = run.first;
-    for (; v + step <= end; v += step) cancelled += SettleTwo(tiles, pose, least, v, rest + v, now + v);
+    for (; v + step <= end; v += step)
+        cancelled += MoveTwo(tiles, pose, sums_at, least, v, rest + v, now + v);
     for (; v < end; v += step) {
         glm::vec2 last[tile_block] = {}, moved[tile_block];
         std::copy(rest + v, rest + end, last);
-        cancelled += SettleTwo(tiles, pose, least, v, last, moved);
+        cancelled += MoveTwo(tiles, pose, sums_at, least, v, last, moved);
         std::copy(moved, moved + (end - v), now + v);
     }
     return cancelled;
+}
+
+std::size_t DeformRun(const WeightTiles& tiles, const Pose& pose, VertexRun run, const glm::vec2* rest,
+                      glm::vec2* now) {
+    return MoveRun(tiles, pose, AllProbes{tiles, pose.transformations}, run, rest, now);
+}
+
+std::size_t DragRun(const WeightTiles& tiles, const Pose& pose, const OthersSum& others, VertexRun run,
+                    const glm::vec2* rest, glm::vec2* now) {
+    return MoveRun(tiles, pose, OneProbe{others, pose.transformations[others.probe]}, run, rest, now);
+}
+
+/// p: the transformations with 0 in the dragged probe's place
+void SumOthersRun(const WeightTiles& tiles, std::span<const DualComplex<float>> p, VertexRun run,
+                  OthersSum& others) {
+    const Tag tag;
+    const std::size_t lanes = hn::Lanes(tag);
+    for (std::size_t v = run.first; v < run.first + run.count; v += 2 * lanes) {
+        const Sums s = SumTwo(tiles, p, v);
+        float *at = others_at(others, v), *at2 = others_at(others, v + lanes);
+        hn::Store(s.a, tag, at), hn::Store(s.a2, tag, at2);
+        hn::Store(s.b, tag, at + tile_width), hn::Store(s.b2, tag, at2 + tile_width);
+        hn::Store(s.c, tag, at + 2 * tile_width), hn::Store(s.c2, tag, at2 + 2 * tile_width);
+        hn::Store(s.d, tag, at + 3 * tile_width), hn::Store(s.d2, tag, at2 + 3 * tile_width);
+        const std::size_t own = others.probe * tile_width;
+        hn::Store(hn::Load(tag, column(tiles, v) + own), tag, at + 4 * tile_width);
+        hn::Store(hn::Load(tag, column(tiles, v + lanes) + own), tag, at2 + 4 * tile_width);
+    }
 }
 
 const char* Name() { return hwy::TargetName(HWY_TARGET); }
@@ -125,17 +195,41 @@ HWY_AFTER_NAMESPACE();
 namespace probewarp {
 
 HWY_EXPORT(DeformRun);
+HWY_EXPORT(DragRun);
+HWY_EXPORT(SumOthersRun);
 HWY_EXPORT(Name);
 
 std::size_t deform_dlb(const WeightTiles& tiles, std::span<const glm::vec2> rest, const Pose& pose,
                        VertexRun run, std::span<glm::vec2> now) {
     assert(rest.size() == tiles.vertices && now.size() == tiles.vertices && now.data() != rest.data());
-    assert(pose.transformations.size() == tiles.probes && run.first + run.count <= tiles.vertices);
-    if (run.count == 0) return 0;
-    const std::size_t first = run.first / tile_block * tile_block;
-    const std::size_t blocks = (run.first + run.count - first + tile_block - 1) / tile_block;
-    const std::size_t end = std::min(first + blocks * tile_block, tiles.vertices);
-    return HWY_DYNAMIC_DISPATCH(DeformRun)(tiles, pose, {first, end - first}, rest.data(), now.data());
+    assert(pose.transformations.size() == tiles.probes);
+    return over_blocks(run, tiles.vertices, tiles.probes, [&](VertexRun part) {
+        return HWY_DYNAMIC_DISPATCH(DeformRun)(tiles, pose, part, rest.data(), now.data());
+    });
+}
+
+OthersSum sum_others(const WeightTiles& tiles, const Pose& pose, std::size_t probe) {
+    assert(probe < tiles.probes && pose.transformations.size() == tiles.probes);
+    std::vector<DualComplex<float>> p(pose.transformations.begin(), pose.transformations.end());
+    p[probe] = {0, 0};
+    OthersSum others{probe, AlignedFloats(tiles.weights.size() / tiles.probes * 5)};
+    over_blocks({0, tiles.vertices}, tiles.vertices, tiles.probes, [&](VertexRun part) {
+        HWY_DYNAMIC_DISPATCH(SumOthersRun)(tiles, p, part, others);
+        return std::size_t{0};
+    });
+    return others;
+}
+
+std::size_t deform_dlb_dragged(const WeightTiles& tiles, const OthersSum& others,
+                               std::span<const glm::vec2> rest, const Pose& pose, std::span<glm::vec2> now) {
+    assert(rest.size() == tiles.vertices && now.size() == tiles.vertices && now.data() != rest.data());
+    assert(pose.transformations.size() == tiles.probes &&
+           others.values.size() * tiles.probes == tiles.weights.size() * 5);
+    constexpr std::size_t as_many_as =
+        8;  // probes: the sums, the weights, rest and now are 9 floats a vertex
+    return over_blocks({0, tiles.vertices}, tiles.vertices, as_many_as, [&](VertexRun part) {
+        return HWY_DYNAMIC_DISPATCH(DragRun)(tiles, pose, others, part, rest.data(), now.data());
+    });
 }
 
 const char* deform_target() { return HWY_DYNAMIC_DISPATCH(Name)(); }

@@ -15,6 +15,21 @@ namespace probewarp {
 std::size_t deform_dlb(const WeightTiles& tiles, std::span<const glm::vec2> rest, const Pose& pose,
                        VertexRun run, std::span<glm::vec2> now);
 
+/// What all probes but one add up to: worth keeping while that one is dragged.
+struct OthersSum {
+    std::size_t probe = 0;  ///< the one left out
+    /// #tiles x 5 x 16: s0 and s1 of the others as four real numbers, and the weights of the one.
+    AlignedFloats values;
+};
+
+OthersSum sum_others(const WeightTiles& tiles, const Pose& pose, std::size_t probe);
+
+/// deform_dlb of the whole mesh, in time that does not depend on the number of probes: `others` as made by
+/// sum_others from the same tiles and from a pose that differs in nothing but how `others.probe` moves. The
+/// sum is always the others' and the one's, so that no error grows with the steps of a drag.
+std::size_t deform_dlb_dragged(const WeightTiles& tiles, const OthersSum& others,
+                               std::span<const glm::vec2> rest, const Pose& pose, std::span<glm::vec2> now);
+
 /// The instruction set that this machine's deformation uses, as Highway calls it: "AVX2".
 const char* deform_target();
 

@@ -50,7 +50,7 @@ std::size_t deform_run(const Deformation& d, const Document& document, const Ble
                        VertexRun run, std::span<glm::vec2> now) {
     const std::span<const glm::vec2> rest = mesh_of(d).rest;
     const Pose pose = pose_of(d, document);
-    if (blend.deform_tiles && !d.quick.tiles.rows.empty())
+    if (blend.deform_tiles && !d.quick.tiles.weights.empty())
         return blend.deform_tiles(d.quick.tiles, rest, pose, run, now);
     const std::size_t probes = d.motions.size();
     return blend.deform(rest.subspan(run.first, run.count),
@@ -87,7 +87,7 @@ void refine_all(Deformation& d, const Document& document, bool rebound) {
 
 /// Makes sure of the tiles, where there are weights.
 void tile(Deformation& d) {
-    if (d.quick.tiles.rows.empty() && !d.motions.empty())
+    if (d.quick.tiles.weights.empty() && !d.motions.empty())
         d.quick.tiles = make_tiles(weights_of(d), d.motions.size());
 }
 
@@ -98,39 +98,73 @@ std::vector<Motion<double>> motions_of(const Document& document) {
     return all;
 }
 
-}  // namespace
+/// The one probe whose motion differs; empty where there is none, or more than one.
+std::optional<std::size_t> only_moved(std::span<const Motion<double>> before,
+                                      std::span<const Motion<double>> after) {
+    if (before.size() != after.size()) return {};
+    const auto [first, moved] = std::mismatch(before.begin(), before.end(), after.begin());
+    if (first == before.end() || !std::equal(first + 1, before.end(), moved + 1)) return {};
+    return std::size_t(first - before.begin());
+}
 
-void pose(Deformation& d, const Document& document, std::shared_ptr<const Binding> binding) {
-    assert(fits(binding.get(), document));
-    const bool rebound = d.binding != binding;
-    if (!rebound && d.source == document) return;
-    auto motions = motions_of(document);
-    const bool same_pose = !rebound && d.motions == motions && d.source.blend == document.blend;
-    const bool in_runs = same_pose && is_refined(document) && differ_by_vertex(d.source, document);
-    if (!d.binding || d.binding->mesh != binding->mesh) ++d.mesh_version;
-    d.binding = std::move(binding);
+/// Moves all vertices. `dragged`: the probe that alone was moved, if so
+void deform_all(Deformation& d, const Document& document, std::optional<std::size_t> dragged) {
+    constexpr DeformTilesFunction dlb = &deform_dlb;  // the one with a quicker way
+    OthersSum& others = d.quick.others;
+    d.dragged = dragged && find_blend_method(document.blend)->deform_tiles == dlb && !d.now.empty();
+    if (!d.dragged) {
+        others = {};
+        d.cancelled = deform_run(d, document, {0, d.now.size()});
+        return;
+    }
+    const Pose pose = pose_of(d, document);
+    if (others.values.empty() || others.probe != *dragged) others = sum_others(d.quick.tiles, pose, *dragged);
+    d.cancelled = deform_dlb_dragged(d.quick.tiles, others, mesh_of(d).rest, pose, d.now);
+}
+
+/// The probes' motions, and what follows from them.
+void take_motions(Deformation& d, std::vector<Motion<double>> motions) {
     d.motions = std::move(motions);
     d.transformations.clear();
     for (const auto& motion : d.motions) d.transformations.push_back(cast<float>(motion.p));
+}
+
+}  // namespace
+
+void pose(Deformation& d, const Document& document, std::shared_ptr<const Binding> binding, Pace pace) {
+    assert(fits(binding.get(), document));
+    const bool dragging = pace == Pace::dragging;
+    const bool rebound = d.binding != binding;
+    if (!rebound && d.source == document && (dragging || !d.dragged)) return;
+    auto motions = motions_of(document);
+    const bool same_blend = !rebound && d.source.blend == document.blend;
+    const bool same_pose = same_blend && !d.dragged && d.motions == motions;
+    const bool in_runs = same_pose && is_refined(document) && differ_by_vertex(d.source, document);
+    std::optional<std::size_t> dragged;
+    if (dragging && same_blend) dragged = only_moved(d.motions, motions);
+    if (!d.binding || d.binding->mesh != binding->mesh) ++d.mesh_version;
+    d.binding = std::move(binding);
+    take_motions(d, std::move(motions));
     d.now.resize(mesh_of(d).rest.size());
     if (in_runs) {
         tile(d);
+        d.quick.others = {};
         if (d.refined.empty()) d.refined = d.binding->automatic;
         refine_runs(d, document, changed_runs(d.source, document, mesh_of(d)));
     } else {
         refine_all(d, document, rebound);
         tile(d);
-        d.cancelled = deform_run(d, document, {0, d.now.size()});
+        deform_all(d, document, dragged);
     }
     d.moved = !std::all_of(document.probes.begin(), document.probes.end(), at_rest);
     d.source = document;
     ++d.version;
 }
 
-void update(Deformation& deformation, const Document& document) {
+void update(Deformation& deformation, const Document& document, Pace pace) {
     auto binding = deformation.binding;
     if (!is_bound(binding.get(), document)) binding = make_binding(document, binding);
-    pose(deformation, document, std::move(binding));
+    pose(deformation, document, std::move(binding), pace);
 }
 
 std::vector<glm::vec2> positions_by(const Deformation& deformation, const BlendMethod& blend) {

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "model/binding.h"
-#include "model/weight_tiles.h"
+#include "model/deform_tiles.h"
 
 namespace probewarp {
 
 /// What a deformation keeps to be quick. As large as the weights, so a copy goes without and makes its own.
 struct Quick {
-    WeightTiles tiles;  ///< the weights that deform; without rows: to be made
+    WeightTiles tiles;  ///< the weights that deform; without any: to be made
+    OthersSum others;   ///< of `tiles` and the pose's other probes; without any: no probe is dragged
 
     Quick() = default;
     Quick(Quick&&) = default;
@@ -37,6 +38,7 @@ struct Deformation {
     unsigned long mesh_version = 0;                   ///< grows with every new mesh
     unsigned long version = 0;                        ///< grows with every change
     Quick quick;
+    bool dragged = false;  ///< whether `now` is of a drag: equal to what it would be at rest but for rounding
 };
 
 const Mesh& mesh_of(const Deformation& deformation);
@@ -44,13 +46,18 @@ const Mesh& mesh_of(const Deformation& deformation);
 /// The weights that deform: #vertices x #probes, row-major.
 std::span<const float> weights_of(const Deformation& deformation);
 
+/// Whether the pose is about to change again, as while a probe is dragged: then the vertices are moved by the
+/// quickest way, and the next time that it is not, by the usual one.
+enum class Pace { settled, dragging };
+
 /// Brings `deformation` up to date with `document`, which must have a picture. Throws Error as make_binding
 /// does, and then nothing is changed.
-void update(Deformation& deformation, const Document& document);
+void update(Deformation& deformation, const Document& document, Pace pace = Pace::settled);
 
 /// Brings everything but the binding up to date: `binding` may be of an earlier state, but must fit the
 /// document.
-void pose(Deformation& deformation, const Document& document, std::shared_ptr<const Binding> binding);
+void pose(Deformation& deformation, const Document& document, std::shared_ptr<const Binding> binding,
+          Pace pace = Pace::settled);
 
 /// Where another blend takes the vertices in the same pose: #vertices, image pixels.
 std::vector<glm::vec2> positions_by(const Deformation& deformation, const BlendMethod& blend);

@@ -2,11 +2,10 @@
 // first to the last as one stream.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
-#include <vector>
 
+#include "model/aligned.h"
 #include "model/mesh.h"
 
 namespace probewarp {
@@ -15,16 +14,11 @@ inline constexpr std::size_t tile_width = 16;
 /// What is deformed in one go: two vectors of the widest units there are.
 inline constexpr std::size_t tile_block = 2 * tile_width;
 
-/// One probe's weights at the 16 vertices of a tile: a cache line.
-struct alignas(64) TileRow {
-    std::array<float, tile_width> weights{};
-};
-
 struct WeightTiles {
     std::size_t vertices = 0, probes = 0;
-    /// #tiles x #probes; the tiles fill whole blocks. A vertex that the mesh does not have follows the first
-    /// probe alone, so that its blend has an answer.
-    std::vector<TileRow> rows;
+    /// #tiles x #probes x 16; the tiles fill whole blocks. A vertex that the mesh does not have follows the
+    /// first probe alone, so that its blend has an answer.
+    AlignedFloats weights;
     float largest_sum = 0;  ///< no vertex's weights have a larger sum of |w_i|
 };
 

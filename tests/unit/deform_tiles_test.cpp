@@ -3,6 +3,7 @@
 #include "model/deform_tiles.h"
 
 #include <hwy/targets.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <cstring>
 #include <random>
@@ -161,19 +162,20 @@ TEST(DeformTiles, CancelledVerticesFollowTheHeaviestAsInThePlainFunction) {
 }
 
 TEST(DeformTiles, IsNeverNotANumber) {
-    Scene scene;
-    scene.centre = glm::vec2(0);
-    scene.add(motion<double>(0, 0, 5));
-    scene.add(motion<double>(360 * degrees, 0, 7));
-    for (const float w : {0.0f, 1e-30f, 1e-20f, 1.0f, 1e15f})
+    for (const float w : {0.0f, 1e-30f, 1e-20f, 1.0f, 1e15f}) {
+        Scene scene;
+        scene.centre = glm::vec2(0);
+        scene.add(motion<double>(0, 0, 5));
+        scene.add(motion<double>(360 * degrees, 0, 7));
         for (int v = 0; v < 9; ++v) {
             scene.rest.push_back({v, 2 * v});
             scene.weights.insert(scene.weights.end(), {w, v % 2 ? w : 0});
         }
-    with_every_target([&] {
-        for (const glm::vec2 now : by_tiles(scene).now)
-            EXPECT_TRUE(std::isfinite(now.x) && std::isfinite(now.y));
-    });
+        with_every_target([&] {
+            for (const glm::vec2 now : by_tiles(scene).now)
+                EXPECT_TRUE(std::isfinite(now.x) && std::isfinite(now.y)) << w;
+        });
+    }
 }
 
 TEST(DeformTiles, ARunIsDeformedAsTheWhole) {
@@ -198,6 +200,48 @@ TEST(DeformTiles, ARunIsDeformedAsTheWhole) {
     });
 }
 
+TEST(DeformTiles, IsTheSameByAnyNumberOfThreads) {
+    // 70 x 32 vertices of 64 probes: more than four times what one thread takes at least.
+    expect_always("bit for bit, all of the mesh and a run", [] {
+        const Scene scene = any_scene(70 * 32 + *whole(0, 31), 64, 3);
+        const OthersSum others = sum_others(make_tiles(scene.weights, 64), scene.pose(), 7);
+        const auto all = [&] {
+            std::vector<glm::vec2> now(scene.rest.size());
+            const WeightTiles tiles = make_tiles(scene.weights, 64);
+            const OthersSum sums = sum_others(tiles, scene.pose(), 7);
+            RC_ASSERT(sums.values == others.values);
+            deform_dlb_dragged(tiles, sums, scene.rest, scene.pose(), now);
+            return std::pair(by_tiles(scene), now);
+        };
+        const auto many = all();
+        oneapi::tbb::task_arena one(1);
+        RC_ASSERT(one.execute(all) == many);
+    });
+}
+
+TEST(DeformTiles, ADraggedProbeIsWhatAllProbesAreUpToRounding) {
+    with_every_target([] {
+        expect_always("at the end of a drag, and back at its beginning", [] {
+            Scene scene = any_scene(*whole(1, 200), *whole(1, 40), 5);
+            const std::size_t probe = std::size_t(*whole(0, int(scene.probes()) - 1));
+            const WeightTiles tiles = make_tiles(scene.weights, scene.probes());
+            const OthersSum others = sum_others(tiles, scene.pose(), probe);
+            const std::complex<double> rest = scene.motions[probe].rest;
+            scene.motions[probe] = motion(*angle(5), rest, rest + *testing::point<double>(1000));
+            scene.transformations[probe] = cast<float>(scene.motions[probe].p);
+            const Moved plain = plainly(scene);
+            Moved moved{std::vector<glm::vec2>(scene.rest.size()), 0};
+            moved.cancelled = deform_dlb_dragged(tiles, others, scene.rest, scene.pose(), moved.now);
+            RC_ASSERT(moved.cancelled == plain.cancelled);
+            for (std::size_t v = 0; v < scene.rest.size(); ++v) {
+                const double share = share_of(scene, v);  // as above
+                const double allowed = std::max(0.01, 8192 * 0x1p-21 / (share * share));
+                RC_ASSERT(apart(plain.now[v], moved.now[v]) <= allowed);
+            }
+        });
+    });
+}
+
 TEST(WeightTiles, HoldEveryWeightAndTakeOverRuns) {
     expect_always("made at once or run by run", [] {
         const Scene before = any_scene(*whole(1, 100), 5, 0);
@@ -210,11 +254,97 @@ TEST(WeightTiles, HoldEveryWeightAndTakeOverRuns) {
         for (std::size_t v = 0; v < before.rest.size(); ++v)
             for (std::size_t i = 0; i < 5; ++i)
                 RC_ASSERT(column(tiles, v)[i * tile_width] == after.weights[5 * v + i]);
-        const std::size_t all = tiles.rows.size() / 5 * tile_width;
+        const std::size_t all = tiles.weights.size() / 5;
         RC_ASSERT(all % tile_block == 0 && all >= before.rest.size() &&
                   all < before.rest.size() + tile_block);
         RC_ASSERT(tiles.vertices == before.rest.size() && tiles.probes == 5u);
     });
+}
+
+/// A document with a few probes that turn little, so that a float's rounding counts nowhere much, and what
+/// became of it.
+struct Drags : ::testing::Test {
+    Document document = blank_document(640, 480, 20);
+    Deformation deformation;
+
+    void SetUp() override {
+        for (const int x : {100, 300, 500}) add_probe(document, {x, x / 2 + 40}, {x + 9, x / 2}, 0.3);
+        update(deformation, document);
+    }
+    /// How far the vertices are at most from where a fresh deformation has them; image pixels.
+    double error() const {
+        Deformation anew;
+        update(anew, document);
+        EXPECT_EQ(deformation.cancelled, anew.cancelled);
+        EXPECT_EQ(deformation.moved, anew.moved);
+        EXPECT_EQ(weights_of(deformation).size(), weights_of(anew).size());
+        double most = 0;
+        for (std::size_t v = 0; v < anew.now.size(); ++v)
+            most = std::max(most, apart(deformation.now[v], anew.now[v]));
+        return most;
+    }
+};
+constexpr double float_pixels = 640 * 0x1p-20;  // 16 roundings of the largest coordinate
+
+TEST_F(Drags, DoNotGatherErrorsAndSettleInEveryBit) {
+    for (int step = 0; step < 1000; ++step) {
+        document.probes[1].now.x += 0.37, document.probes[1].angle += 0.001;
+        update(deformation, document, Pace::dragging);
+        EXPECT_TRUE(deformation.dragged);
+    }
+    EXPECT_LT(error(), float_pixels);
+    const auto version = deformation.version;
+    update(deformation, document, Pace::dragging);  // held still
+    EXPECT_EQ(deformation.version, version);
+    update(deformation, document);
+    EXPECT_EQ(deformation.version, version + 1);
+    EXPECT_FALSE(deformation.dragged);
+    EXPECT_EQ(error(), 0);
+}
+
+TEST_F(Drags, EndExactlyAtRest) {
+    for (Probe& probe : document.probes) probe.now = probe.rest, probe.angle = 0;
+    update(deformation, document);
+    document.probes[2].now.y += 50;
+    update(deformation, document, Pace::dragging);
+    document.probes[2].now = document.probes[2].rest;
+    update(deformation, document, Pace::dragging);
+    EXPECT_TRUE(deformation.dragged);
+    EXPECT_EQ(deformation.now, mesh_of(deformation).rest);
+}
+
+TEST_F(Drags, FollowEveryOtherChangeInBetween) {
+    const auto step = [&](const char* what) {
+        update(deformation, document, Pace::dragging);
+        EXPECT_LT(error(), float_pixels) << what;
+        document.probes[0].now.x += 1;
+        update(deformation, document, Pace::dragging);
+        EXPECT_LT(error(), float_pixels) << what << ", then dragged";
+    };
+    document.probes[0].now.x += 5;
+    step("the same probe");
+    document.probes[1].angle -= 0.2;
+    step("another probe");
+    document.probes[1].angle -= 0.2, document.probes[0].angle += 0.1;
+    step("two probes");
+    document.blend = "spiral";
+    step("another blend");
+    document.blend = "dlb";
+    step("and back");
+    document.weights.most = 2;
+    step("fewer probes a vertex");
+    document.weights.exponent = 3;
+    step("other weights");
+    document.probes[0].radius = 40;
+    step("another reach");
+    document.probes.pop_back();
+    step("a probe less");
+    document.mesh.cells = 15;
+    step("another mesh");
+    document.probes[1].paint = std::make_shared<const PaintMap>(map_of(document, nullptr));
+    step("blank paint");
+    document.probes[1].name = "other";
+    step("another name");
 }
 
 TEST(Deformation, ACopyDeformsOn) {

@@ -132,6 +132,25 @@ TEST_F(EditorTest, DraggingADiscMovesTheProbeByAsMuch) {
     EXPECT_LT(distance(probe().now, {115.5, 87}), 1e-12);
 }
 
+TEST_F(EditorTest, AfterADragThePictureIsExactlyTheDocuments) {
+    open_with({probe_at({100, 80}, {100, 80}, 1), probe_at({300, 200}, {280, 220}, 2)});
+    refresh(editor);
+    PointerEvent pointer;
+    pointer.at = on_canvas({100, 80});
+    press(editor, pointer);
+    for (const double x : {30, 31, 35}) {
+        pointer.at = on_canvas({100, 80}) + glm::dvec2(x, 14);
+        move(editor, pointer);
+        refresh(editor);
+        EXPECT_TRUE(editor.deformation.dragged);
+    }
+    release(editor, pointer);
+    refresh(editor);
+    Deformation anew;
+    update(anew, editor.document);
+    EXPECT_EQ(editor.deformation.now, anew.now);
+}
+
 TEST_F(EditorTest, AClickThatTremblesMovesNothing) {
     open_with({probe_at({100, 80}, {100, 80})});
     const glm::dvec2 held = on_canvas({100, 80});
