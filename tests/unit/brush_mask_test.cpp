@@ -13,7 +13,7 @@ using testing::degrees;
 using testing::expect_always;
 using testing::real;
 using testing::round_brush;
-using testing::Scene;
+using testing::BrushScene;
 using testing::strength_at;
 using testing::whole;
 
@@ -49,7 +49,7 @@ TEST(Falloff, IsASmoothStepFromTheHardPartToTheRadius) {
 }
 
 TEST(DabMask, IsADiscOnThePictureAtRest) {
-    const Scene scene;
+    const BrushScene scene;
     for (const Brush& brush : {round_brush(40), round_brush(17.3, 0.6)})
         for (const glm::dvec2 centre : {glm::dvec2(200, 300), glm::dvec2(77.7, 99.1)})
             expect_falloff(scene.dab_at(centre, brush), scene.map, brush, centre,
@@ -57,7 +57,7 @@ TEST(DabMask, IsADiscOnThePictureAtRest) {
 }
 
 TEST(DabMask, FollowsTheDeformedPicture) {
-    Scene scene;
+    BrushScene scene;
     const auto moved = [](glm::dvec2 p) { return p + glm::dvec2(1000, -300); };
     scene.move(moved);
     const Brush brush = round_brush(30);
@@ -85,7 +85,7 @@ TEST(DabMask, HasTheMapsTexelsNotThePictures) {
 }
 
 TEST(DabMask, ReachesTheBorderFromOutside) {
-    const Scene scene;
+    const BrushScene scene;
     const Brush brush = round_brush(30);
     const Mask mask = scene.dab_at({-20, 300}, brush);
     expect_falloff(mask, scene.map, brush, {-20, 300}, [](glm::dvec2 p) { return p; });
@@ -97,7 +97,7 @@ TEST(DabMask, ReachesTheBorderFromOutside) {
 }
 
 TEST(DabMask, OfATinyBrushIsTheTexelUnderTheCentre) {
-    const Scene scene;
+    const BrushScene scene;
     expect_always("one whole texel", [&] {
         const glm::dvec2 centre{*real(0, 511.99), *real(0, 511.99)};
         const Mask mask = scene.dab_at(centre, round_brush(*real(1e-6, 0.3)));
@@ -109,20 +109,20 @@ TEST(DabMask, OfATinyBrushIsTheTexelUnderTheCentre) {
     // On the picture's very edge, and on a picture stretched so far that the disc falls between the texels.
     EXPECT_EQ(strength_at(scene.dab_at({512, 512}, round_brush(0.01)), 511, 511), 1);
     EXPECT_EQ(strength_at(scene.dab_at({0, 0}, round_brush(0.01)), 0, 0), 1);
-    Scene stretched;
+    BrushScene stretched;
     stretched.move([](glm::dvec2 p) { return 50.0 * p; });
     EXPECT_EQ(strength_at(stretched.dab_at({5001, 5001}, round_brush(5)), 100, 100), 1);
 }
 
 /// The right half laid over the left: it comes later in each row of cells.
-Scene folded() {
-    Scene scene;
+BrushScene folded() {
+    BrushScene scene;
     scene.move([](glm::dvec2 p) { return glm::dvec2(p.x > 256 ? 512 - p.x : p.x, p.y); });
     return scene;
 }
 
 TEST(DabMask, PaintsOnlyTheLayerOnTop) {
-    const Scene scene = folded();
+    const BrushScene scene = folded();
     const Brush brush = round_brush(60, 0.5);
     const Mask mask = scene.dab_at({128, 256}, brush);
     expect_falloff(mask, scene.map, brush, {128, 256},
@@ -142,7 +142,7 @@ TEST(DabMask, PaintsOnlyTheLayerOnTop) {
 }
 
 TEST(DabMask, PixelsWithoutAlphaHideNothing) {
-    Scene scene = folded();
+    BrushScene scene = folded();
     for (int y = 230; y < 270; ++y)
         for (int x = 370; x < 400; ++x) scene.set_alpha(x, y, 0);
     const Brush brush = round_brush(60, 0.9);
@@ -168,7 +168,7 @@ TEST(DabMask, PixelsWithoutAlphaHideNothing) {
 }
 
 TEST(DabMask, CoversWhatTheOutermostVerticesLookAt) {
-    Scene scene;
+    BrushScene scene;
     for (int y = 0; y < 512; ++y)
         for (int x = 256; x < 512; ++x) scene.set_alpha(x, y, 0);
     MeshSettings settings;
@@ -192,7 +192,7 @@ TEST(DabMask, CoversWhatTheOutermostVerticesLookAt) {
 
 TEST(DabMask, SurvivesTrianglesWithoutArea) {
     expect_always("strengths in [0, 1]", [] {
-        Scene scene;
+        BrushScene scene;
         const int kind = *whole(0, 3);
         scene.move([=](glm::dvec2 p) {
             if (kind == 0) return glm::dvec2(256);       // to a point
@@ -230,7 +230,7 @@ TEST(Mirror, ReflectsInALineClockwiseFromTheVertical) {
 }
 
 TEST(Mirror, ReflectsAMask) {
-    const Scene scene;
+    const BrushScene scene;
     const Mask mask = scene.dab_at({180, 300}, round_brush(40));
     const Mask across = mirrored(mask, scene.map, scene.map, scene.frame, {{256, 0}, 0});
     for (int y = 0; y < 512; ++y)
@@ -257,7 +257,7 @@ TEST(Mirror, ReflectsAMask) {
 }
 
 TEST(Mirror, DoesNotFadeADabOfOneTexel) {
-    const Scene scene;
+    const BrushScene scene;
     const Mask click = scene.dab_at({180.5, 300.5}, round_brush(0.1));
     expect_always("the strongest texel stays as strong", [&] {
         const MirrorAxis axis{{*real(200, 300), 256}, *real(-0.1, 0.1)};

@@ -9,14 +9,14 @@
 namespace probewarp::testing {
 
 /// A picture of 512 x 512 over 64 x 64 cells, with a paint map of a texel a pixel.
-struct Scene {
+struct BrushScene {
     Image image;
     Mesh mesh;
     std::vector<glm::vec2> now;
     PaintMap map = new_paint_map(512, 512);
     PictureFrame frame{{256, 256}, 512};
 
-    Scene() : mesh(grid_mesh(512, 512, 64)), now(mesh.rest) {
+    BrushScene() : mesh(grid_mesh(512, 512, 64)), now(mesh.rest) {
         image.width = image.height = 512;
         image.rgba = std::vector<std::uint8_t>(std::size_t{512} * 512 * 4, 255);
     }

@@ -12,7 +12,7 @@ namespace {
 using testing::expect_always;
 using testing::real;
 using testing::round_brush;
-using testing::Scene;
+using testing::BrushScene;
 using testing::strength_at;
 using testing::whole;
 
@@ -100,7 +100,7 @@ TEST(Dab, SmoothPaintsTheMeanShareAround) {
 
 TEST(Dab, AsksForEachShareOnce) {
     for (const BrushMode mode : {BrushMode::add, BrushMode::smooth, BrushMode::replace, BrushMode::erase}) {
-        const Scene scene;
+        const BrushScene scene;
         PaintMap map = scene.map;
         Stroke stroke{map, {}, {}};
         Brush brush = brush_of(mode, 0.5);
@@ -154,7 +154,7 @@ struct Dabs {
     std::vector<Mask> masks;
 };
 
-Dabs any_dabs(const Scene& scene, int most) {
+Dabs any_dabs(const BrushScene& scene, int most) {
     Dabs dabs;
     dabs.brush = brush_of(any_mode(), *real(0, 1), *real(0.01, 1));
     dabs.brush.radius = *real(0.1, 50);
@@ -166,7 +166,7 @@ Dabs any_dabs(const Scene& scene, int most) {
 }
 
 TEST(Stroke, DoesNotDependOnTheDabsOrder) {
-    const Scene scene;
+    const BrushScene scene;
     expect_always("forwards = backwards, to the last bit", [&] {
         PaintMap before = scene.map;
         edit_texels(before, 0, 0, 90, 512, [](int x, int y, Paint) {
@@ -184,7 +184,7 @@ TEST(Stroke, DoesNotDependOnTheDabsOrder) {
 }
 
 TEST(Stroke, KeepsToItsMasksItsRangeAndItsOwnTiles) {
-    const Scene scene;
+    const BrushScene scene;
     expect_always("random strokes one after the other", [&] {
         PaintMap map = scene.map;
         for (int strokes = *whole(1, 4); strokes > 0; --strokes) {
@@ -219,7 +219,7 @@ TEST(Stroke, KeepsToItsMasksItsRangeAndItsOwnTiles) {
 }
 
 TEST(Stroke, ErasesEverythingBackToABlankMap) {
-    const Scene scene;
+    const BrushScene scene;
     PaintMap map = scene.map;
     Stroke paints{map, {}, {}};
     const Brush brush = round_brush(50);
