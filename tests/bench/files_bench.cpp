@@ -1,9 +1,15 @@
-// Opening and exporting a picture of 24 megapixels.
+// Opening, drawing and exporting a picture of 24 megapixels, against the libraries alone.
 #include <benchmark/benchmark.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
 
+#include "io/file.h"
 #include "io/image_file.h"
+#include "libraries.h"
 #include "render/context.h"
 #include "render/export.h"
 
@@ -30,25 +36,131 @@ Image photograph() {
     return image;
 }
 
+/// The synthetic picture, or the one that PROBEWARP_PHOTOGRAPH names, so that a real photograph, which is no
+/// part of this repository, can be measured too.
 const Image& picture() {
-    static const Image image = photograph();
+    static const Image image = [] {
+        const char* path = std::getenv("PROBEWARP_PHOTOGRAPH");
+        return path ? read_picture(path).image : photograph();
+    }();
     return image;
 }
 
-void encode(benchmark::State& state, const char* format) {
-    std::size_t size = 0;
-    for (auto _ : state) size = find_image_format(format)->encode(picture(), {}).size();
-    state.counters["MB"] = double(size) / 1e6;
+const std::vector<unsigned char>& rgb() {
+    static const auto pixels = bench::rgb_of(picture());
+    return pixels;
 }
-BENCHMARK_CAPTURE(encode, png, "png")->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK_CAPTURE(encode, jpeg, "jpeg")->Unit(benchmark::kMillisecond);
 
-void open(benchmark::State& state, const char* format) {
-    const auto bytes = find_image_format(format)->encode(picture(), {});
-    for (auto _ : state) benchmark::DoNotOptimize(decode_picture(bytes, "benchmark"));
+double seconds_of(const std::function<void()>& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
-BENCHMARK_CAPTURE(open, png, "png")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(open, jpeg, "jpeg")->Unit(benchmark::kMillisecond);
+
+/// Ours and theirs by turns, so that whatever else the machine does meets both; the counter is how many times
+/// as long they take.
+void compare(benchmark::State& state, const char* counter, const std::function<void()>& ours,
+             const std::function<void()>& theirs) {
+    double our_seconds = 0, their_seconds = 0;
+    for (auto _ : state) {
+        const double seconds = seconds_of(ours);
+        state.SetIterationTime(seconds);
+        our_seconds += seconds;
+        their_seconds += seconds_of(theirs);
+    }
+    state.counters[counter] = their_seconds / our_seconds;
+}
+
+std::size_t encoded_size(const char* format, Compression compression = Compression::standard) {
+    return find_image_format(format)->encode(picture(), {.compression = compression}).size();
+}
+
+void encode_png_against_stb(benchmark::State& state, Compression compression) {
+    std::size_t ours = 0, theirs = 0;
+    compare(
+        state, "stb_time", [&] { ours = encoded_size("png", compression); },
+        [&] { theirs = bench::stb_png(rgb(), picture().width, picture().height); });
+    state.counters["MB"] = double(ours) / 1e6;
+    state.counters["stb_size"] = double(theirs) / double(ours);
+}
+BENCHMARK_CAPTURE(encode_png_against_stb, fast, Compression::fast)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->MeasureProcessCPUTime()
+    ->Iterations(3);
+BENCHMARK_CAPTURE(encode_png_against_stb, default, Compression::standard)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->MeasureProcessCPUTime()
+    ->Iterations(3);
+
+void encode_small_png_against_libpng(benchmark::State& state) {
+    std::size_t ours = 0, theirs = 0;
+    compare(
+        state, "libpng_time", [&] { ours = encoded_size("png", Compression::small); },
+        [&] { theirs = bench::libpng_best(rgb(), picture().width, picture().height); });
+    state.counters["MB"] = double(ours) / 1e6;
+    state.counters["libpng_size"] = double(theirs) / double(ours);
+}
+BENCHMARK(encode_small_png_against_libpng)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->MeasureProcessCPUTime()
+    ->Iterations(1);
+
+void encode_jpeg_against_libjpeg(benchmark::State& state) {
+    compare(
+        state, "libjpeg_time", [] { encoded_size("jpeg"); }, [] { bench::libjpeg(picture()); });
+}
+BENCHMARK(encode_jpeg_against_libjpeg)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->MeasureProcessCPUTime()
+    ->Iterations(5);
+
+void open_against(benchmark::State& state, const char* format, const char* counter,
+                  void (*library)(std::span<const std::byte>)) {
+    const auto bytes = find_image_format(format)->encode(picture(), {});
+    compare(
+        state, counter, [&] { find_image_format(format)->decode(bytes); }, [&] { library(bytes); });
+}
+BENCHMARK_CAPTURE(open_against, spng, "png", "spng_time", &bench::spng_open)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->MeasureProcessCPUTime()
+    ->Iterations(5);
+BENCHMARK_CAPTURE(open_against, libjpeg, "jpeg", "libjpeg_time", &bench::libjpeg_open)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->MeasureProcessCPUTime()
+    ->Iterations(5);
+
+/// The whole program from a JPEG to a PNG, against its decoding and encoding alone: the counter is the share
+/// of the program's time that these two would take.
+void program_against_its_files(benchmark::State& state) {
+    const auto bytes = find_image_format("jpeg")->encode(picture(), {});
+    const auto folder = std::filesystem::temp_directory_path();
+    const std::string from = folder / "probewarp-bench.jpg", to = folder / "probewarp-bench.png";
+    write_file(from, bytes);
+    const std::string command = "'" PROBEWARP_PROGRAM "' render '" + from + "' -o '" + to +
+                                "' --probe 2000,2000:2300,1800,23 --probe 4500,1500";
+    compare(
+        state, "files_time",
+        [&] {
+            if (std::system(command.c_str()) != 0) state.SkipWithError("the program failed");
+        },
+        [&] {
+            const Image image = find_image_format("jpeg")->decode(bytes);
+            find_image_format("png")->encode(image, {});
+        });
+    std::filesystem::remove(from);
+    std::filesystem::remove(to);
+}
+BENCHMARK(program_against_its_files)
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->MeasureProcessCPUTime()
+    ->Iterations(3);
 
 void mipmaps(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(smaller_levels(picture()));
