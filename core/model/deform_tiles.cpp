@@ -16,7 +16,7 @@ namespace {
 
 template <class Sum>  // OthersSum, const or not
 auto others_at(Sum& others, std::size_t vertex) {
-    return others.values.data() + vertex / tile_width * 5 * tile_width + vertex % tile_width;
+    return others.values.data() + vertex / tile_width * 4 * tile_width + vertex % tile_width;
 }
 
 /// The few vertices that may be cancelled are looked at one by one, and decided as deform_dlb does. The
@@ -100,6 +100,14 @@ HWY_INLINE Sums SumTwo(const WeightTiles& tiles, std::span<const DualComplex<flo
     return {a, b, c, d, a2, b2, c2, d2};
 }
 
+constexpr float smallest = std::numeric_limits<float>::min();
+/// Where the others' sum and the dragged probe's part may cancel to less than this share of all weights,
+/// the plain function decides. Four times cancelled_share, so that rounding has room.
+constexpr float unsure_share = 4 * cancelled_share<float>;
+/// A dragged probe with no weight, or less than this share, counts as having this much: 8192 pixels by it
+/// are 1e-8.
+constexpr float least_share = 1e-12f;
+
 /// What the sums of all probes are taken from.
 struct AllProbes {
     const WeightTiles& tiles;
@@ -108,20 +116,21 @@ struct AllProbes {
     HWY_INLINE Sums operator()(std::size_t v) const { return SumTwo(tiles, p, v); }
 };
 
-/// What they are taken from while one probe is dragged: what the others add up to, and its own part.
+/// What they are taken from while one probe is dragged: what the others add up to over the one's weight, so
+/// that the one adds itself.
 struct OneProbe {
     const OthersSum& others;
     const DualComplex<float>& p;
 
-    HWY_INLINE Vector Part(const float* at, std::size_t row, Vector w, float x) const {
-        return hn::MulAdd(w, hn::Set(Tag(), x), hn::Load(Tag(), at + row * tile_width));
+    HWY_INLINE Vector Row(std::size_t v, std::size_t row, float own) const {
+        const Tag tag;
+        return hn::Add(hn::Load(tag, others_at(others, v) + row * tile_width), hn::Set(tag, own));
     }
     HWY_INLINE Sums operator()(std::size_t v) const {
-        const float *at = others_at(others, v), *at2 = others_at(others, v + hn::Lanes(Tag()));
-        const Vector w = hn::Load(Tag(), at + 4 * tile_width), w2 = hn::Load(Tag(), at2 + 4 * tile_width);
-        return {Part(at, 0, w, p.p0.real()),   Part(at, 1, w, p.p0.imag()),   Part(at, 2, w, p.p1.real()),
-                Part(at, 3, w, p.p1.imag()),   Part(at2, 0, w2, p.p0.real()), Part(at2, 1, w2, p.p0.imag()),
-                Part(at2, 2, w2, p.p1.real()), Part(at2, 3, w2, p.p1.imag())};
+        const std::size_t v2 = v + hn::Lanes(Tag());
+        const float a = p.p0.real(), b = p.p0.imag(), c = p.p1.real(), d = p.p1.imag();
+        return {Row(v, 0, a),  Row(v, 1, b),  Row(v, 2, c),  Row(v, 3, d),
+                Row(v2, 0, a), Row(v2, 1, b), Row(v2, 2, c), Row(v2, 3, d)};
     }
 };
 
@@ -138,12 +147,11 @@ HWY_INLINE std::size_t MoveTwo(const WeightTiles& tiles, const Pose& pose, const
     return settle_cancelled(tiles, pose, {v, 2 * lanes}, rest, now);
 }
 
+/// least: where |s0|^2 is not above it, or not a number, the plain function decides
 template <class SumsAt>
-HWY_INLINE std::size_t MoveRun(const WeightTiles& tiles, const Pose& pose, const SumsAt& sums_at,
+HWY_INLINE std::size_t MoveRun(const WeightTiles& tiles, const Pose& pose, const SumsAt& sums_at, float least,
                                VertexRun run, const glm::vec2* rest, glm::vec2* now) {
     const std::size_t step = 2 * hn::Lanes(Tag()), end = run.first + run.count;
-    const float share = cancelled_share<float> * tiles.largest_sum;
-    const float least = std::max(share * share, std::numeric_limits<float>::min());
     std::size_t cancelled = 0, v = run.first;
     for (; v + step <= end; v += step)
         cancelled += MoveTwo(tiles, pose, sums_at, least, v, rest + v, now + v);
@@ -158,29 +166,41 @@ HWY_INLINE std::size_t MoveRun(const WeightTiles& tiles, const Pose& pose, const
 
 std::size_t DeformRun(const WeightTiles& tiles, const Pose& pose, VertexRun run, const glm::vec2* rest,
                       glm::vec2* now) {
-    return MoveRun(tiles, pose, AllProbes{tiles, pose.transformations}, run, rest, now);
+    const float share = cancelled_share<float> * tiles.largest_sum;
+    const float least = std::max(share * share, smallest);
+    return MoveRun(tiles, pose, AllProbes{tiles, pose.transformations}, least, run, rest, now);
 }
 
 std::size_t DragRun(const WeightTiles& tiles, const Pose& pose, const OthersSum& others, VertexRun run,
                     const glm::vec2* rest, glm::vec2* now) {
-    return MoveRun(tiles, pose, OneProbe{others, pose.transformations[others.probe]}, run, rest, now);
+    const OneProbe sums{others, pose.transformations[others.probe]};
+    return MoveRun(tiles, pose, sums, smallest, run, rest, now);
 }
 
-/// p: the transformations with 0 in the dragged probe's place
-void SumOthersRun(const WeightTiles& tiles, std::span<const DualComplex<float>> p, VertexRun run,
-                  OthersSum& others) {
+/// One vector of OthersSum. w: the dragged probe's weights; total: the sum of all weights
+HWY_INLINE void StoreOver(Vector a, Vector b, Vector c, Vector d, Vector w, Vector total, float* to) {
     const Tag tag;
-    const std::size_t lanes = hn::Lanes(tag);
+    // Its sum with one of length w may be as short as this.
+    const Vector shortest = hn::Abs(hn::Sub(hn::Sqrt(hn::MulAdd(a, a, hn::Mul(b, b))), w));
+    const auto unsure = hn::Not(hn::Ge(shortest, hn::Mul(total, hn::Set(tag, unsure_share))));
+    const Vector over = hn::Max(w, hn::Mul(total, hn::Set(tag, least_share)));
+    hn::Store(hn::IfThenElse(unsure, hn::NaN(tag), hn::Div(a, over)), tag, to);
+    hn::Store(hn::Div(b, over), tag, to + tile_width);
+    hn::Store(hn::Div(c, over), tag, to + 2 * tile_width);
+    hn::Store(hn::Div(d, over), tag, to + 3 * tile_width);
+}
+
+/// p, all: the transformations with 0 in the dragged probe's place, and as many ones
+void SumOthersRun(const WeightTiles& tiles, std::span<const DualComplex<float>> p,
+                  std::span<const DualComplex<float>> all, VertexRun run, OthersSum& others) {
+    const Tag tag;
+    const std::size_t lanes = hn::Lanes(tag), own = others.probe * tile_width;
     for (std::size_t v = run.first; v < run.first + run.count; v += 2 * lanes) {
-        const Sums s = SumTwo(tiles, p, v);
-        float *at = others_at(others, v), *at2 = others_at(others, v + lanes);
-        hn::Store(s.a, tag, at), hn::Store(s.a2, tag, at2);
-        hn::Store(s.b, tag, at + tile_width), hn::Store(s.b2, tag, at2 + tile_width);
-        hn::Store(s.c, tag, at + 2 * tile_width), hn::Store(s.c2, tag, at2 + 2 * tile_width);
-        hn::Store(s.d, tag, at + 3 * tile_width), hn::Store(s.d2, tag, at2 + 3 * tile_width);
-        const std::size_t own = others.probe * tile_width;
-        hn::Store(hn::Load(tag, column(tiles, v) + own), tag, at + 4 * tile_width);
-        hn::Store(hn::Load(tag, column(tiles, v + lanes) + own), tag, at2 + 4 * tile_width);
+        const Sums s = SumTwo(tiles, p, v), total = SumTwo(tiles, all, v);
+        const Vector w = hn::Load(tag, column(tiles, v) + own);
+        const Vector w2 = hn::Load(tag, column(tiles, v + lanes) + own);
+        StoreOver(s.a, s.b, s.c, s.d, w, total.a, others_at(others, v));
+        StoreOver(s.a2, s.b2, s.c2, s.d2, w2, total.a2, others_at(others, v + lanes));
     }
 }
 
@@ -212,9 +232,10 @@ OthersSum sum_others(const WeightTiles& tiles, const Pose& pose, std::size_t pro
     assert(probe < tiles.probes && pose.transformations.size() == tiles.probes);
     std::vector<DualComplex<float>> p(pose.transformations.begin(), pose.transformations.end());
     p[probe] = {0, 0};
-    OthersSum others{probe, AlignedFloats(tiles.weights.size() / tiles.probes * 5)};
+    const std::vector<DualComplex<float>> ones(p.size(), {1, 0});
+    OthersSum others{probe, AlignedFloats(tiles.weights.size() / tiles.probes * 4)};
     over_blocks({0, tiles.vertices}, tiles.vertices, tiles.probes, [&](VertexRun part) {
-        HWY_DYNAMIC_DISPATCH(SumOthersRun)(tiles, p, part, others);
+        HWY_DYNAMIC_DISPATCH(SumOthersRun)(tiles, p, ones, part, others);
         return std::size_t{0};
     });
     return others;
@@ -224,9 +245,8 @@ std::size_t deform_dlb_dragged(const WeightTiles& tiles, const OthersSum& others
                                std::span<const glm::vec2> rest, const Pose& pose, std::span<glm::vec2> now) {
     assert(rest.size() == tiles.vertices && now.size() == tiles.vertices && now.data() != rest.data());
     assert(pose.transformations.size() == tiles.probes &&
-           others.values.size() * tiles.probes == tiles.weights.size() * 5);
-    constexpr std::size_t as_many_as =
-        8;  // probes: the sums, the weights, rest and now are 9 floats a vertex
+           others.values.size() * tiles.probes == tiles.weights.size() * 4);
+    constexpr std::size_t as_many_as = 8;  // probes: the sums, rest and now are 8 floats a vertex
     return over_blocks({0, tiles.vertices}, tiles.vertices, as_many_as, [&](VertexRun part) {
         return HWY_DYNAMIC_DISPATCH(DragRun)(tiles, pose, others, part, rest.data(), now.data());
     });

@@ -18,7 +18,8 @@ std::size_t deform_dlb(const WeightTiles& tiles, std::span<const glm::vec2> rest
 /// What all probes but one add up to: worth keeping while that one is dragged.
 struct OthersSum {
     std::size_t probe = 0;  ///< the one left out
-    /// #tiles x 5 x 16: s0 and s1 of the others as four real numbers, and the weights of the one.
+    /// #tiles x 4 x 16: s0 and s1 of the others over the one's weight, as four real numbers: a blend does not
+    /// see what all weights are divided by. Not a number where the one, turned, might cancel the others.
     AlignedFloats values;
 };
 

@@ -209,7 +209,8 @@ TEST(DeformTiles, IsTheSameByAnyNumberOfThreads) {
             std::vector<glm::vec2> now(scene.rest.size());
             const WeightTiles tiles = make_tiles(scene.weights, 64);
             const OthersSum sums = sum_others(tiles, scene.pose(), 7);
-            RC_ASSERT(sums.values == others.values);
+            // Bytes, since some of them may not be numbers.
+            RC_ASSERT(std::memcmp(sums.values.data(), others.values.data(), others.values.size() * 4) == 0);
             deform_dlb_dragged(tiles, sums, scene.rest, scene.pose(), now);
             return std::pair(by_tiles(scene), now);
         };
@@ -237,6 +238,36 @@ TEST(DeformTiles, ADraggedProbeIsWhatAllProbesAreUpToRounding) {
                 const double share = share_of(scene, v);  // as above
                 const double allowed = std::max(0.01, 8192 * 0x1p-21 / (share * share));
                 RC_ASSERT(apart(plain.now[v], moved.now[v]) <= allowed);
+            }
+        });
+    });
+}
+
+TEST(DeformTiles, ADraggedProbeMayCancelTheOthersOrHaveNoWeight) {
+    with_every_target([] {
+        expect_always("equal weights or nearly, none, or hardly any, turned against the others", [] {
+            Scene scene = any_scene(*whole(1, 100), 2, 0);
+            scene.motions.clear(), scene.transformations.clear();
+            scene.add(motion<double>(0, {-500, 20}, {-490, 20}));
+            scene.add(motion<double>(0, {500, 20}, {530, 20}));
+            for (std::size_t v = 0; v < scene.rest.size(); ++v) {
+                const float scale = *rc::gen::element(1.0f, 1e-3f);
+                const float shares[] = {1, 1 - 1e-7f, 1 - 2e-5f, 0.5f, 1e-14f, 1e-30f, 0};
+                scene.weights[2 * v] = scale, scene.weights[2 * v + 1] = scale * shares[*whole(0, 6)];
+            }
+            const WeightTiles tiles = make_tiles(scene.weights, 2);
+            const OthersSum others = sum_others(tiles, scene.pose(), 1);
+            scene.motions[1] = motion<double>(*rc::gen::element(360.0, 359.0, 90.0) * degrees, {500, 20}, 0);
+            scene.transformations[1] = cast<float>(scene.motions[1].p);
+            const Moved plain = plainly(scene);
+            Moved moved{std::vector<glm::vec2>(scene.rest.size()), 0};
+            moved.cancelled = deform_dlb_dragged(tiles, others, scene.rest, scene.pose(), moved.now);
+            RC_ASSERT(moved.cancelled == plain.cancelled);
+            for (std::size_t v = 0; v < scene.rest.size(); ++v) {
+                const double share = share_of(scene, v);  // as above
+                const double allowed = std::max(0.01, 8192 * 0x1p-21 / (share * share));
+                const bool same = plain.now[v] == moved.now[v];
+                RC_ASSERT(same || (share >= 1e-6 && apart(plain.now[v], moved.now[v]) <= allowed));
             }
         });
     });
