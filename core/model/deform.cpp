@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "math/planar_blend.h"
+#include "model/blend_tiles.h"
 #include "model/deform_tiles.h"
 
 namespace probewarp {
@@ -18,26 +19,6 @@ glm::vec2 displacement(float a, float b, float c, float d, glm::vec2 v) {
     const float x = c - b * v.y, y = d + b * v.x;
     const float scale = 2.0f / (a * a + b * b);
     return {scale * (a * x - b * y), scale * (a * y + b * x)};
-}
-
-/// Deforms by any blend, vertex by vertex, in double.
-template <Similarity<double> (*blend)(std::span<const float>, std::span<const Motion<double>>)>
-std::size_t deform_by(std::span<const glm::vec2> rest, std::span<const float> weights, const Pose& pose,
-                      std::span<glm::vec2> now) {
-    const std::size_t probes = pose.motions.size();
-    assert(now.size() == rest.size() && weights.size() == rest.size() * probes);
-    if (probes == 0) {
-        std::copy(rest.begin(), rest.end(), now.begin());
-        return 0;
-    }
-    std::size_t cancelled = 0;
-    for (std::size_t v = 0; v < rest.size(); ++v) {
-        const Similarity<double> map = blend(weights.subspan(v * probes, probes), pose.motions);
-        const auto place = to_complex(glm::dvec2(rest[v] - pose.centre));
-        now[v] = rest[v] + glm::vec2(to_vec(map.less_one * place + map.shift));
-        cancelled += map.cancelled;
-    }
-    return cancelled;
 }
 
 /// The place of the largest |w_i|, the first of equals.
@@ -92,28 +73,28 @@ std::span<const BlendMethod> blend_methods() {
     static constexpr std::array<BlendMethod, 8> methods{{
         {"dlb", "DLB, as turned",
          "The usual choice: quick, rigid, and each probe turns the picture the way it was turned itself.",
-         &deform_dlb, &deform_dlb, &planar_dlb},
+         &deform_dlb, &planar_dlb},
         {"dlb-shortest", "DLB, shortest way",
          "When only matters where a probe points, not how it got there: turns go the short way round.",
-         &deform_by<planar_dlb_shortest>, nullptr, &planar_dlb_shortest},
+         &deform_dlb_shortest, &planar_dlb_shortest},
         {"dib", "DIB, the exact mean",
          "When a turn is to spread evenly between probes: the exact mean of their motions; not for whole "
          "turns.",
-         &deform_by<planar_dib>, nullptr, &planar_dib},
+         &deform_dib, &planar_dib},
         {"log-linear", "Logarithm at the centre",
          "When the picture is to swirl about its own centre; probes' whole turns are beyond it.",
-         &deform_by<planar_log_linear>, nullptr, &planar_log_linear},
+         &deform_log_linear, &planar_log_linear},
         {"spiral", "Spiral", "For twirls: any number of turns, spread evenly with the weights.",
-         &deform_by<spiral>, nullptr, &spiral},
+         &deform_spiral, &spiral},
         {"linear", "Linear",
          "To match programs that blend matrices: what lies between probes turned apart shrinks.",
-         &deform_by<planar_linear>, nullptr, &planar_linear},
+         &deform_linear, &planar_linear},
         {"mls-rigid", "Moving least squares, rigid",
          "When probes are dragged, not turned: how they moved to each other turns the picture.",
-         &deform_by<mls_rigid>, nullptr, &mls_rigid},
+         &deform_mls_rigid, &mls_rigid},
         {"mls-similarity", "Moving least squares, similar",
-         "The same, and what probes are pulled apart from each other grows.", &deform_by<mls_similarity>,
-         nullptr, &mls_similarity},
+         "The same, and what probes are pulled apart from each other grows.", &deform_mls_similarity,
+         &mls_similarity},
     }};
     return methods;
 }

@@ -20,26 +20,18 @@ struct Pose {
     glm::vec2 centre{0};                                  ///< image pixels
 };
 
-/// Moves every vertex and returns for how many the blend has no answer (those follow their heaviest probe;
-/// see each blend). Nothing is allocated. Without probes nothing moves. rest, now: #vertices, image pixels;
-/// now may be rest weights:   #vertices x #probes, row-major, defined up to a factor per vertex, >= 0, not
-/// all zero
-using DeformFunction = std::size_t (*)(std::span<const glm::vec2> rest, std::span<const float> weights,
-                                       const Pose& pose, std::span<glm::vec2> now);
-
-/// The same for a run of vertices and those of the blocks that it touches: it counts the vertices of all of
-/// these for which there is no answer. Each comes out the same whatever the run is, and as from the function
-/// above but for rounding. rest, now: #vertices of the mesh; now may not be rest
-using DeformTilesFunction = std::size_t (*)(const WeightTiles& tiles, std::span<const glm::vec2> rest,
-                                            const Pose& pose, VertexRun run, std::span<glm::vec2> now);
+/// Moves a run of vertices and those of the blocks that it touches, and returns for how many of all these the
+/// blend has no answer (those follow their heaviest probe; see each blend). Each comes out the same whatever
+/// the run is. rest, now: #vertices of the mesh, image pixels; now may not be rest
+using DeformFunction = std::size_t (*)(const WeightTiles& tiles, std::span<const glm::vec2> rest,
+                                       const Pose& pose, VertexRun run, std::span<glm::vec2> now);
 
 struct BlendMethod {
     std::string_view name;   ///< what the command line and the project file call it
     std::string_view label;  ///< what the window calls it
     std::string_view when;   ///< one sentence: when to use it
-    DeformFunction deform;
-    DeformTilesFunction deform_tiles;  ///< by vector units; null: there is none
-    /// The blend itself at one place, in double: #probes weights and motions in, the map of the plane out.
+    DeformFunction deform;   ///< `blend` for every vertex, by vector units
+    /// The blend at one place, in double: #probes weights and motions in, the map of the plane out.
     Similarity<double> (*blend)(std::span<const double> weights, std::span<const Motion<double>> motions);
 };
 
@@ -57,10 +49,12 @@ struct MovedVertex {
 /// One vertex by DLB, as deform_dlb. weights: #probes, `stride` floats apart
 MovedVertex dlb_vertex(const float* weights, std::size_t stride, const Pose& pose, glm::vec2 rest);
 
-/// Deforms by DLB without a square root: with s = sum w_i p_i the vertex moves by 2 s0 (i Im(s0) v + s1) /
-/// |s0|^2, which is (s0^2 v + 2 s0 s1) / |s0|^2 - v, written so that it is exactly 0 where no probe moved.
-/// No answer where |s0| is below cancelled_share of the weights' sum. The plain function: deform_tiles.h has
-/// the quick one.
+/// DLB of all vertices without a square root: with s = sum w_i p_i the vertex moves by 2 s0 (i Im(s0) v + s1)
+/// / |s0|^2, which is (s0^2 v + 2 s0 s1) / |s0|^2 - v, written so that it is exactly 0 where no probe moved.
+/// No answer where |s0| is below cancelled_share of the weights' sum. The plain function, which the quick one
+/// in deform_tiles.h is held to. Without probes nothing moves. rest, now: #vertices, image pixels; now may be
+/// rest
+/// weights: #vertices x #probes, row-major, defined up to a factor per vertex, >= 0, not all zero
 std::size_t deform_dlb(std::span<const glm::vec2> rest, std::span<const float> weights, const Pose& pose,
                        std::span<glm::vec2> now);
 

@@ -43,6 +43,8 @@ std::size_t settle_cancelled(const WeightTiles& tiles, const Pose& pose, VertexR
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "model/move_run-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace probewarp {
 namespace HWY_NAMESPACE {
@@ -52,10 +54,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::CappedTag<float, tile_width>;
 using Vector = hn::Vec<Tag>;
-
-/// How far ahead of the sums the weights are fetched: 8 KB. Less leaves a tenth of the memory's speed unused
-/// on machines with much memory far away; more serves alike up to 16 KB.
-constexpr std::size_t floats_ahead = 2048;
 
 /// Moves a vector of vertices by 2 s0 (i Im(s0) v + s1) / |s0|^2 with s0 = a + ib and s1 = c + id. Whether
 /// |s0|^2 > least at all of them; only there is the result of use. rest, now: x and y in turns
@@ -134,47 +132,38 @@ struct OneProbe {
     }
 };
 
-/// Moves two vectors of vertices, the first of them `v`; returns how many are cancelled. rest, now: begin at
-/// v
+/// Moves two vectors of vertices. least: where |s0|^2 is not above it, or not a number, the plain function
+/// decides
 template <class SumsAt>
-HWY_INLINE std::size_t MoveTwo(const WeightTiles& tiles, const Pose& pose, const SumsAt& sums_at, float least,
-                               std::size_t v, const glm::vec2* rest, glm::vec2* now) {
-    const std::size_t lanes = hn::Lanes(Tag());
-    const Sums s = sums_at(v);
-    const bool one = Move(s.a, s.b, s.c, s.d, pose.centre, least, &rest->x, &now->x);
-    const bool other = Move(s.a2, s.b2, s.c2, s.d2, pose.centre, least, &rest[lanes].x, &now[lanes].x);
-    if (HWY_LIKELY(one && other)) return 0;
-    return settle_cancelled(tiles, pose, {v, 2 * lanes}, rest, now);
-}
+struct MoveTwo {
+    const WeightTiles& tiles;
+    const Pose& pose;
+    const SumsAt& sums_at;
+    float least;
 
-/// least: where |s0|^2 is not above it, or not a number, the plain function decides
-template <class SumsAt>
-HWY_INLINE std::size_t MoveRun(const WeightTiles& tiles, const Pose& pose, const SumsAt& sums_at, float least,
-                               VertexRun run, const glm::vec2* rest, glm::vec2* now) {
-    const std::size_t step = 2 * hn::Lanes(Tag()), end = run.first + run.count;
-    std::size_t cancelled = 0, v = run.first;
-    for (; v + step <= end; v += step)
-        cancelled += MoveTwo(tiles, pose, sums_at, least, v, rest + v, now + v);
-    for (; v < end; v += step) {
-        glm::vec2 last[tile_block] = {}, moved[tile_block];
-        std::copy(rest + v, rest + end, last);
-        cancelled += MoveTwo(tiles, pose, sums_at, least, v, last, moved);
-        std::copy(moved, moved + (end - v), now + v);
+    HWY_INLINE std::size_t operator()(std::size_t v, const glm::vec2* rest, glm::vec2* now) const {
+        const std::size_t lanes = hn::Lanes(Tag());
+        const Sums s = sums_at(v);
+        const bool one = Move(s.a, s.b, s.c, s.d, pose.centre, least, &rest->x, &now->x);
+        const bool other = Move(s.a2, s.b2, s.c2, s.d2, pose.centre, least, &rest[lanes].x, &now[lanes].x);
+        if (HWY_LIKELY(one && other)) return 0;
+        return settle_cancelled(tiles, pose, {v, 2 * lanes}, rest, now);
     }
-    return cancelled;
-}
+};
 
 std::size_t DeformRun(const WeightTiles& tiles, const Pose& pose, VertexRun run, const glm::vec2* rest,
                       glm::vec2* now) {
     const float share = cancelled_share<float> * tiles.largest_sum;
-    const float least = std::max(share * share, smallest);
-    return MoveRun(tiles, pose, AllProbes{tiles, pose.transformations}, least, run, rest, now);
+    const AllProbes sums{tiles, pose.transformations};
+    const MoveTwo<AllProbes> move{tiles, pose, sums, std::max(share * share, smallest)};
+    return MoveRun(run, 2 * hn::Lanes(Tag()), rest, now, move);
 }
 
 std::size_t DragRun(const WeightTiles& tiles, const Pose& pose, const OthersSum& others, VertexRun run,
                     const glm::vec2* rest, glm::vec2* now) {
     const OneProbe sums{others, pose.transformations[others.probe]};
-    return MoveRun(tiles, pose, sums, smallest, run, rest, now);
+    const MoveTwo<OneProbe> move{tiles, pose, sums, smallest};
+    return MoveRun(run, 2 * hn::Lanes(Tag()), rest, now, move);
 }
 
 /// One vector of OthersSum. w: the dragged probe's weights; total: the sum of all weights

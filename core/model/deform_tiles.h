@@ -11,7 +11,7 @@
 
 namespace probewarp {
 
-/// deform_dlb as a DeformTilesFunction.
+/// deform_dlb as a DeformFunction.
 std::size_t deform_dlb(const WeightTiles& tiles, std::span<const glm::vec2> rest, const Pose& pose,
                        VertexRun run, std::span<glm::vec2> now);
 

@@ -44,18 +44,13 @@ Pose pose_of(const Deformation& d, const Document& document) {
     return {d.motions, d.transformations, glm::vec2(centre(document.picture->image))};
 }
 
-/// Moves one run of vertices, or a few more about it; returns for how many of all these the blend has no
-/// answer. now: #vertices of the mesh
+/// As a DeformFunction, of the tiles; without probes nothing moves.
 std::size_t deform_run(const Deformation& d, const Document& document, const BlendMethod& blend,
                        VertexRun run, std::span<glm::vec2> now) {
     const std::span<const glm::vec2> rest = mesh_of(d).rest;
-    const Pose pose = pose_of(d, document);
-    if (blend.deform_tiles && !d.quick.tiles.weights.empty())
-        return blend.deform_tiles(d.quick.tiles, rest, pose, run, now);
-    const std::size_t probes = d.motions.size();
-    return blend.deform(rest.subspan(run.first, run.count),
-                        weights_of(d).subspan(run.first * probes, run.count * probes), pose,
-                        now.subspan(run.first, run.count));
+    if (!d.motions.empty()) return blend.deform(d.quick.tiles, rest, pose_of(d, document), run, now);
+    std::copy(rest.begin(), rest.end(), now.begin());
+    return 0;
 }
 
 std::size_t deform_run(Deformation& d, const Document& document, VertexRun run) {
@@ -109,9 +104,9 @@ std::optional<std::size_t> only_moved(std::span<const Motion<double>> before,
 
 /// Moves all vertices. `dragged`: the probe that alone was moved, if so
 void deform_all(Deformation& d, const Document& document, std::optional<std::size_t> dragged) {
-    constexpr DeformTilesFunction dlb = &deform_dlb;  // the one with a quicker way
+    constexpr DeformFunction dlb = &deform_dlb;  // the one with a quicker way
     OthersSum& others = d.quick.others;
-    d.dragged = dragged && find_blend_method(document.blend)->deform_tiles == dlb && !d.now.empty();
+    d.dragged = dragged && find_blend_method(document.blend)->deform == dlb && !d.now.empty();
     if (!d.dragged) {
         others = {};
         d.cancelled = deform_run(d, document, {0, d.now.size()});
@@ -168,6 +163,11 @@ void update(Deformation& deformation, const Document& document, Pace pace) {
 }
 
 std::vector<glm::vec2> positions_by(const Deformation& deformation, const BlendMethod& blend) {
+    if (deformation.quick.tiles.weights.empty() && !deformation.motions.empty()) {  // a copy
+        Deformation tiled = deformation;
+        tile(tiled);
+        return positions_by(tiled, blend);
+    }
     std::vector<glm::vec2> positions(mesh_of(deformation).rest.size());
     deform_run(deformation, deformation.source, blend, {0, positions.size()}, positions);
     return positions;

@@ -184,6 +184,25 @@ BENCHMARK(with_threads<by_tiles, 1>)->Name("deform_tiles")->Apply(sizes);
 BENCHMARK(with_threads<by_tiles, 2>)->Name("deform_tiles_two_threads")->Apply(sizes);
 BENCHMARK(with_threads<by_others, 1>)->Name("deform_dragged")->Apply(sizes);
 
+/// Every blend; the one at this place in the table.
+void deform_blend(benchmark::State& state) {
+    Scene& s = scene_of(state);
+    const BlendMethod& blend = blend_methods()[std::size_t(state.range(2))];
+    state.SetLabel(std::string(blend.name));
+    using Control = oneapi::tbb::global_control;
+    const Control most(Control::max_allowed_parallelism, 1);
+    for (auto _ : state) {
+        blend.deform(s.tiles, s.rest, s.pose(), {0, s.vertices}, s.now);
+        benchmark::ClobberMemory();
+    }
+}
+BENCHMARK(deform_blend)->Apply([](benchmark::internal::Benchmark* b) {  // 10201 x 8 and 1002001 x 16
+    const auto blends = long(blend_methods().size());
+    b->ArgsProduct({{100}, {8}, benchmark::CreateDenseRange(0, blends - 1, 1)});
+    b->ArgsProduct({{1000}, {16}, benchmark::CreateDenseRange(0, blends - 1, 1)});
+    b->Unit(benchmark::kMicrosecond)->UseRealTime();
+});
+
 /// What a change of the weights costs beyond working them out.
 void make_the_tiles(benchmark::State& state) {
     const Scene& s = scene_of(state);

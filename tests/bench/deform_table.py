@@ -53,6 +53,19 @@ def machine(context):
             f"{context.get('instruction set', '?')}; load when it began: {load:.1f}")
 
 
+def blends(benchmarks):
+    """The second table: each blend's time over DLB's, one thread."""
+    found = [b for b in benchmarks if b.get("aggregate_name") == "median" and b["run_name"].startswith("deform_blend/")]
+    found.sort(key=lambda b: int(b["run_name"].split("/")[3]))  # its place in the program's table
+    times = {(b["label"], tuple(b["run_name"].split("/")[1:3])): b["cpu_time"] for b in found}
+    sizes = [(tuple(str(n) for n in size), name) for size, name in SIZES if ("dlb", tuple(map(str, size))) in times]
+    print("\n| blend, over DLB's time | " + " | ".join(name for _, name in sizes) + " |")
+    print("|---|" + "---|" * len(sizes))
+    for blend in dict.fromkeys(label for label, _ in times):
+        cells = [figure(times[blend, size] / times["dlb", size]) for size, _ in sizes]
+        print(f"| {blend} | " + " | ".join(cells) + " |")
+
+
 def main():
     with open(sys.argv[1], encoding="utf-8") as file:
         results = json.load(file)
@@ -63,6 +76,7 @@ def main():
     for row, over, under, clock, targets in ROWS:
         cells = [cell(found, over, under, clock, size, t) for (size, _), t in zip(SIZES, targets)]
         print(f"| {row} | " + " | ".join(cells) + " |")
+    blends(results["benchmarks"])
 
 
 if __name__ == "__main__":

@@ -2,98 +2,46 @@
 // has.
 #include "model/deform_tiles.h"
 
-#include <hwy/targets.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <cstring>
-#include <random>
-#include <set>
 
 #include "generators.h"
 #include "math/blend.h"
 #include "model/deformation.h"
 #include "pictures.h"
+#include "weighed_scene.h"
 
 namespace probewarp {
 namespace {
 
 using testing::add_probe;
 using testing::angle;
+using testing::any_weighed_scene;
+using testing::apart;
 using testing::blank_document;
 using testing::degrees;
 using testing::expect_always;
-using testing::real;
+using testing::MovedVertices;
+using testing::WeighedScene;
 using testing::whole;
+using testing::with_every_target;
 
-/// Runs `check` with each instruction set in turn.
-template <class Check>
-void with_every_target(Check check) {
-    std::set<std::string> names;
-    for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        EXPECT_STREQ(deform_target(), hwy::TargetName(target));
-        names.insert(deform_target());
-        check();
-        hwy::SetSupportedTargetsForTest(0);
-    }
-    EXPECT_TRUE(names.contains(hwy::TargetName(HWY_STATIC_TARGET)));  // what any machine has
-}
-
-/// Some vertices, their weights, and what moves them; values as the meshes and schemes give them.
-struct Scene {
-    std::vector<glm::vec2> rest;
-    std::vector<float> weights;
-    std::vector<Motion<double>> motions;
-    std::vector<DualComplex<float>> transformations;
-    glm::vec2 centre{4096, 2500};
-
-    std::size_t probes() const { return motions.size(); }
-    Pose pose() const { return {motions, transformations, centre}; }
-    void add(const Motion<double>& motion) {
-        motions.push_back(motion);
-        transformations.push_back(cast<float>(motion.p));
-    }
-};
-
-Scene any_scene(int vertices, int probes, double turns) {
-    Scene scene;
-    std::mt19937 random(unsigned(*whole(0, 1 << 30)));
-    std::uniform_real_distribution<double> place(0, 8192), way(-1000, 1000), share(0, 1);
-    for (int v = 0; v < vertices; ++v) scene.rest.push_back({place(random), place(random)});
-    for (int v = 0; v < vertices * probes; ++v)
-        scene.weights.push_back(share(random) < 0.2 ? 0.0f : float(std::pow(share(random), 4)));
-    for (int v = 0; v < vertices; ++v)  // one of each row is 1
-        scene.weights[std::size_t(v * probes + int(random() % unsigned(probes)))] = 1;
-    for (int i = 0; i < probes; ++i) {
-        const std::complex<double> rest(place(random) - 4096, place(random) - 2500);
-        scene.add(motion(*angle(turns), rest, rest + std::complex<double>(way(random), way(random))));
-    }
-    return scene;
-}
-
-struct Moved {
-    std::vector<glm::vec2> now;
-    std::size_t cancelled = 0;
-    friend bool operator==(const Moved&, const Moved&) = default;
-};
-
-Moved plainly(const Scene& scene) {
-    Moved moved{scene.rest, 0};
+MovedVertices plainly(const WeighedScene& scene) {
+    MovedVertices moved{scene.rest, 0};
     moved.cancelled = deform_dlb(scene.rest, scene.weights, scene.pose(), moved.now);
     return moved;
 }
 
-Moved by_tiles(const Scene& scene) {
-    Moved moved{std::vector<glm::vec2>(scene.rest.size()), 0};
+MovedVertices by_tiles(const WeighedScene& scene) {
+    MovedVertices moved{std::vector<glm::vec2>(scene.rest.size()), 0};
     moved.cancelled = deform_dlb(make_tiles(scene.weights, scene.probes()), scene.rest, scene.pose(),
                                  {0, scene.rest.size()}, moved.now);
     return moved;
 }
 
-double apart(glm::dvec2 a, glm::dvec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
-
 /// |s0| / sum w of one vertex, in double.
-double share_of(const Scene& scene, std::size_t vertex) {
+double share_of(const WeighedScene& scene, std::size_t vertex) {
     std::complex<double> s0;
     double total = 0;
     for (std::size_t i = 0; i < scene.probes(); ++i) {
@@ -107,8 +55,8 @@ double share_of(const Scene& scene, std::size_t vertex) {
 TEST(DeformTiles, IsThePlainFunctionUpToRounding) {
     with_every_target([] {
         expect_always("any number of vertices, 1 to 70 probes, many turns", [] {
-            const Scene scene = any_scene(*whole(1, 200), *whole(1, 70), 5);
-            const Moved plain = plainly(scene), quick = by_tiles(scene);
+            const WeighedScene scene = any_weighed_scene(*whole(1, 200), *whole(1, 70), 5);
+            const MovedVertices plain = plainly(scene), quick = by_tiles(scene);
             RC_ASSERT(quick.cancelled == plain.cancelled);
             for (std::size_t v = 0; v < scene.rest.size(); ++v) {
                 // As for Deform's own test: floats of up to 8192 pixels, their rounding magnified where the
@@ -124,11 +72,11 @@ TEST(DeformTiles, IsThePlainFunctionUpToRounding) {
 TEST(DeformTiles, LeavesEveryVertexExactlyWhereNoProbeMoved) {
     with_every_target([] {
         expect_always("now = rest, in every bit", [] {
-            Scene scene = any_scene(*whole(1, 100), *whole(1, 40), 1);
+            WeighedScene scene = any_weighed_scene(*whole(1, 100), *whole(1, 40), 1);
             const std::size_t probes = scene.probes();
             scene.motions.clear(), scene.transformations.clear();
             for (std::size_t i = 0; i < probes; ++i) scene.add(motion<double>(0, {3, 4}, {3, 4}));
-            const Moved moved = by_tiles(scene);
+            const MovedVertices moved = by_tiles(scene);
             RC_ASSERT(std::memcmp(moved.now.data(), scene.rest.data(), scene.rest.size() * 8) == 0);
             RC_ASSERT(moved.cancelled == 0u);
         });
@@ -138,7 +86,7 @@ TEST(DeformTiles, LeavesEveryVertexExactlyWhereNoProbeMoved) {
 TEST(DeformTiles, CancelledVerticesFollowTheHeaviestAsInThePlainFunction) {
     with_every_target([] {
         expect_always("a whole turn against none, equal weights or nearly", [] {
-            Scene scene = any_scene(*whole(1, 100), 3, 0);
+            WeighedScene scene = any_weighed_scene(*whole(1, 100), 3, 0);
             scene.motions.clear(), scene.transformations.clear();
             scene.add(motion<double>(0, {-500, 20}, {-490, 20}));
             scene.add(motion<double>(360 * degrees, {500, 20}, {530, 20}));
@@ -151,7 +99,7 @@ TEST(DeformTiles, CancelledVerticesFollowTheHeaviestAsInThePlainFunction) {
                 w[0] = w[1] = scale, w[2] = 0;
                 w[*whole(0, 1)] -= scale * lacks[*whole(0, 4)];
             }
-            const Moved plain = plainly(scene), quick = by_tiles(scene);
+            const MovedVertices plain = plainly(scene), quick = by_tiles(scene);
             RC_ASSERT(quick.cancelled == plain.cancelled);
             for (std::size_t v = 0; v < scene.rest.size(); ++v) {
                 RC_ASSERT(std::isfinite(quick.now[v].x) && std::isfinite(quick.now[v].y));
@@ -163,7 +111,7 @@ TEST(DeformTiles, CancelledVerticesFollowTheHeaviestAsInThePlainFunction) {
 
 TEST(DeformTiles, IsNeverNotANumber) {
     for (const float w : {0.0f, 1e-30f, 1e-20f, 1.0f, 1e15f}) {
-        Scene scene;
+        WeighedScene scene;
         scene.centre = glm::vec2(0);
         scene.add(motion<double>(0, 0, 5));
         scene.add(motion<double>(360 * degrees, 0, 7));
@@ -182,11 +130,11 @@ TEST(DeformTiles, ARunIsDeformedAsTheWhole) {
     with_every_target([] {
         expect_always("the run's vertices anew, the others within its blocks alike, none beyond", [] {
             const int vertices = *whole(1, 150);
-            Scene scene = any_scene(vertices, *whole(1, 9), 2);
+            WeighedScene scene = any_weighed_scene(vertices, *whole(1, 9), 2);
             const std::size_t first = std::size_t(*whole(0, vertices - 1));
             const std::size_t count = std::size_t(*whole(0, vertices - int(first)));
             const WeightTiles tiles = make_tiles(scene.weights, scene.probes());
-            const Moved whole_mesh = by_tiles(scene);
+            const MovedVertices whole_mesh = by_tiles(scene);
             std::vector<glm::vec2> now(scene.rest.size(), glm::vec2(-7));
             deform_dlb(tiles, scene.rest, scene.pose(), {first, count}, now);
             for (std::size_t v = 0; v < now.size(); ++v) {
@@ -203,7 +151,7 @@ TEST(DeformTiles, ARunIsDeformedAsTheWhole) {
 TEST(DeformTiles, IsTheSameByAnyNumberOfThreads) {
     // 70 x 32 vertices of 64 probes: more than four times what one thread takes at least.
     expect_always("bit for bit, all of the mesh and a run", [] {
-        const Scene scene = any_scene(70 * 32 + *whole(0, 31), 64, 3);
+        const WeighedScene scene = any_weighed_scene(70 * 32 + *whole(0, 31), 64, 3);
         const OthersSum others = sum_others(make_tiles(scene.weights, 64), scene.pose(), 7);
         const auto all = [&] {
             std::vector<glm::vec2> now(scene.rest.size());
@@ -223,15 +171,15 @@ TEST(DeformTiles, IsTheSameByAnyNumberOfThreads) {
 TEST(DeformTiles, ADraggedProbeIsWhatAllProbesAreUpToRounding) {
     with_every_target([] {
         expect_always("at the end of a drag, and back at its beginning", [] {
-            Scene scene = any_scene(*whole(1, 200), *whole(1, 40), 5);
+            WeighedScene scene = any_weighed_scene(*whole(1, 200), *whole(1, 40), 5);
             const std::size_t probe = std::size_t(*whole(0, int(scene.probes()) - 1));
             const WeightTiles tiles = make_tiles(scene.weights, scene.probes());
             const OthersSum others = sum_others(tiles, scene.pose(), probe);
             const std::complex<double> rest = scene.motions[probe].rest;
             scene.motions[probe] = motion(*angle(5), rest, rest + *testing::point<double>(1000));
             scene.transformations[probe] = cast<float>(scene.motions[probe].p);
-            const Moved plain = plainly(scene);
-            Moved moved{std::vector<glm::vec2>(scene.rest.size()), 0};
+            const MovedVertices plain = plainly(scene);
+            MovedVertices moved{std::vector<glm::vec2>(scene.rest.size()), 0};
             moved.cancelled = deform_dlb_dragged(tiles, others, scene.rest, scene.pose(), moved.now);
             RC_ASSERT(moved.cancelled == plain.cancelled);
             for (std::size_t v = 0; v < scene.rest.size(); ++v) {
@@ -246,7 +194,7 @@ TEST(DeformTiles, ADraggedProbeIsWhatAllProbesAreUpToRounding) {
 TEST(DeformTiles, ADraggedProbeMayCancelTheOthersOrHaveNoWeight) {
     with_every_target([] {
         expect_always("equal weights or nearly, none, or hardly any, turned against the others", [] {
-            Scene scene = any_scene(*whole(1, 100), 2, 0);
+            WeighedScene scene = any_weighed_scene(*whole(1, 100), 2, 0);
             scene.motions.clear(), scene.transformations.clear();
             scene.add(motion<double>(0, {-500, 20}, {-490, 20}));
             scene.add(motion<double>(0, {500, 20}, {530, 20}));
@@ -259,8 +207,8 @@ TEST(DeformTiles, ADraggedProbeMayCancelTheOthersOrHaveNoWeight) {
             const OthersSum others = sum_others(tiles, scene.pose(), 1);
             scene.motions[1] = motion<double>(*rc::gen::element(360.0, 359.0, 90.0) * degrees, {500, 20}, 0);
             scene.transformations[1] = cast<float>(scene.motions[1].p);
-            const Moved plain = plainly(scene);
-            Moved moved{std::vector<glm::vec2>(scene.rest.size()), 0};
+            const MovedVertices plain = plainly(scene);
+            MovedVertices moved{std::vector<glm::vec2>(scene.rest.size()), 0};
             moved.cancelled = deform_dlb_dragged(tiles, others, scene.rest, scene.pose(), moved.now);
             RC_ASSERT(moved.cancelled == plain.cancelled);
             for (std::size_t v = 0; v < scene.rest.size(); ++v) {
@@ -275,8 +223,8 @@ TEST(DeformTiles, ADraggedProbeMayCancelTheOthersOrHaveNoWeight) {
 
 TEST(WeightTiles, HoldEveryWeightAndTakeOverRuns) {
     expect_always("made at once or run by run", [] {
-        const Scene before = any_scene(*whole(1, 100), 5, 0);
-        Scene after = before;
+        const WeighedScene before = any_weighed_scene(*whole(1, 100), 5, 0);
+        WeighedScene after = before;
         WeightTiles tiles = make_tiles(before.weights, 5);
         const std::size_t first = std::size_t(*whole(0, int(before.rest.size()) - 1));
         const std::size_t count = before.rest.size() - first;
@@ -385,6 +333,8 @@ TEST(Deformation, ACopyDeformsOn) {
     Deformation first;
     update(first, document);
     Deformation copy = first;
+    const BlendMethod& spiral = *find_blend_method("spiral");
+    EXPECT_EQ(positions_by(first, spiral), positions_by(copy, spiral));
     document.probes[0].angle = 2;
     update(first, document), update(copy, document);
     EXPECT_EQ(first.now, copy.now);
