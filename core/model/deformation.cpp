@@ -77,13 +77,14 @@ void refine_all(Deformation& d, const Document& document, bool rebound) {
     if (!rebound && !refined && d.refined.empty()) return;
     if (refined && same && !d.refined.empty() && repainted(d.source, document, mesh_of(d)).empty()) return;
     d.refined = refined ? refined_weights(document, *d.binding) : std::vector<float>();
-    d.quick = {};
+    d.quick.tiles.vertices = 0;  // their memory will be used again
+    d.quick.others = {};
 }
 
 /// Makes sure of the tiles, where there are weights.
 void tile(Deformation& d) {
-    if (d.quick.tiles.weights.empty() && !d.motions.empty())
-        d.quick.tiles = make_tiles(weights_of(d), d.motions.size());
+    if (d.quick.tiles.vertices > 0 || d.motions.empty()) return;
+    d.quick.tiles = make_tiles(weights_of(d), d.motions.size(), std::move(d.quick.tiles.weights));
 }
 
 std::vector<Motion<double>> motions_of(const Document& document) {
@@ -163,7 +164,7 @@ void update(Deformation& deformation, const Document& document, Pace pace) {
 }
 
 std::vector<glm::vec2> positions_by(const Deformation& deformation, const BlendMethod& blend) {
-    if (deformation.quick.tiles.weights.empty() && !deformation.motions.empty()) {  // a copy
+    if (deformation.quick.tiles.vertices == 0 && !deformation.motions.empty()) {  // a copy
         Deformation tiled = deformation;
         tile(tiled);
         return positions_by(tiled, blend);

@@ -14,7 +14,7 @@ namespace probewarp {
 
 /// What a deformation keeps to be quick. As large as the weights, so a copy goes without and makes its own.
 struct Quick {
-    WeightTiles tiles;  ///< the weights that deform; without any: to be made
+    WeightTiles tiles;  ///< the weights that deform; of no vertices: to be made
     OthersSum others;   ///< of `tiles` and the pose's other probes; without any: no probe is dragged
 
     Quick() = default;

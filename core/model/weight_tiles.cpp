@@ -4,6 +4,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "model/over_blocks.h"
 
 namespace probewarp {
 
@@ -13,8 +17,9 @@ std::size_t place_in(const WeightTiles& tiles, std::size_t vertex) {
     return vertex / tile_width * tiles.probes * tile_width + vertex % tile_width;
 }
 
-/// Takes over vertices of one tile: 16 sums side by side, since one alone would wait for itself.
-void put_in_tile(WeightTiles& tiles, VertexRun run, const float* weights) {
+/// Takes over vertices of one tile: 16 sums side by side, since one alone would wait for itself. Returns the
+/// largest.
+float put_in_tile(WeightTiles& tiles, VertexRun run, const float* weights) {
     float* to = tiles.weights.data() + place_in(tiles, run.first);
     std::array<float, tile_width> sums{};
     for (std::size_t i = 0; i < tiles.probes; ++i, to += tile_width)
@@ -22,7 +27,19 @@ void put_in_tile(WeightTiles& tiles, VertexRun run, const float* weights) {
             to[k] = weights[k * tiles.probes + i];
             sums[k] += std::abs(to[k]);
         }
-    tiles.largest_sum = std::max(tiles.largest_sum, *std::max_element(sums.begin(), sums.end()));
+    return *std::max_element(sums.begin(), sums.end());
+}
+
+/// Writes a run into the tiles; returns the largest of its vertices' sums. weights: as put's
+float put_in_tiles(WeightTiles& tiles, VertexRun run, const float* weights) {
+    float largest = 0;
+    for (std::size_t done = 0; done < run.count;) {
+        const std::size_t v = run.first + done;
+        const std::size_t count = std::min(tile_width - v % tile_width, run.count - done);
+        largest = std::max(largest, put_in_tile(tiles, {v, count}, weights + done * tiles.probes));
+        done += count;
+    }
+    return largest;
 }
 
 }  // namespace
@@ -31,12 +48,19 @@ const float* column(const WeightTiles& tiles, std::size_t vertex) {
     return tiles.weights.data() + place_in(tiles, vertex);
 }
 
-WeightTiles make_tiles(std::span<const float> weights, std::size_t probes) {
+WeightTiles make_tiles(std::span<const float> weights, std::size_t probes, AlignedFloats room) {
     assert(probes > 0 && weights.size() % probes == 0);
-    WeightTiles tiles{weights.size() / probes, probes, {}, 0};
-    const std::size_t blocks = (tiles.vertices + tile_block - 1) / tile_block;
-    tiles.weights.resize(blocks * tile_block * probes);
-    put(tiles, {0, tiles.vertices}, weights);
+    const std::size_t vertices = weights.size() / probes, blocks = (vertices + tile_block - 1) / tile_block;
+    if (room.size() != blocks * tile_block * probes) room = {};  // which it would copy as it grows
+    room.resize(blocks * tile_block * probes);
+    WeightTiles tiles{vertices, probes, std::move(room), 0};
+    std::mutex one;
+    over_blocks({0, tiles.vertices}, tiles.vertices, probes, [&](VertexRun part) {
+        const float largest = put_in_tiles(tiles, part, weights.data() + part.first * probes);
+        const std::scoped_lock lock(one);
+        tiles.largest_sum = std::max(tiles.largest_sum, largest);
+        return std::size_t{0};
+    });
     for (std::size_t v = tiles.vertices; v < blocks * tile_block; ++v)
         for (std::size_t i = 0; i < probes; ++i)
             tiles.weights[place_in(tiles, v) + i * tile_width] = i == 0 ? 1.0f : 0.0f;
@@ -45,12 +69,7 @@ WeightTiles make_tiles(std::span<const float> weights, std::size_t probes) {
 
 void put(WeightTiles& tiles, VertexRun run, std::span<const float> weights) {
     assert(run.first + run.count <= tiles.vertices && weights.size() == run.count * tiles.probes);
-    for (std::size_t done = 0; done < run.count;) {
-        const std::size_t v = run.first + done;
-        const std::size_t count = std::min(tile_width - v % tile_width, run.count - done);
-        put_in_tile(tiles, {v, count}, weights.data() + done * tiles.probes);
-        done += count;
-    }
+    tiles.largest_sum = std::max(tiles.largest_sum, put_in_tiles(tiles, run, weights.data()));
 }
 
 }  // namespace probewarp

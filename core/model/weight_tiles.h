@@ -28,8 +28,8 @@ struct WeightTiles {
 /// Weights of one vertex: #probes, `tile_width` apart.
 const float* column(const WeightTiles& tiles, std::size_t vertex);
 
-/// weights: #vertices x #probes, row-major, at least one probe
-WeightTiles make_tiles(std::span<const float> weights, std::size_t probes);
+/// weights: #vertices x #probes, row-major, at least one probe; room: memory to use again, whatever it holds
+WeightTiles make_tiles(std::span<const float> weights, std::size_t probes, AlignedFloats room = {});
 
 /// Takes over one run of vertices. weights: run.count x #probes, row-major
 void put(WeightTiles& tiles, VertexRun run, std::span<const float> weights);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "model/over_blocks.h"
+
 namespace probewarp {
 
 namespace {
@@ -18,33 +20,70 @@ double squared(glm::dvec2 d) { return d.x * d.x + d.y * d.y; }
 
 }  // namespace
 
-void inverse_distance_weights(std::span<const Probe> probes, double exponent, glm::dvec2 vertex,
-                              std::span<float> weights) {
-    assert(weights.size() == probes.size());
-    // The probe that weighs most has the smallest distance^2 / radius^2; dividing by it keeps every weight in
-    // [0, 1] however near the probe is.
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Probe& probe : probes) nearest = std::min(nearest, squared(in_radii(probe, vertex)));
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        const double own = squared(in_radii(probes[i], vertex));
-        const double ratio = own == nearest ? 1 : nearest / own;
-        weights[i] = float(exponent == 2 ? ratio : std::pow(ratio, exponent / 2));
+namespace {
+
+/// What the schemes by distance want of the probes, each number side by side, and room for one vertex.
+struct Reaches {
+    std::vector<double> x, y, per_radius;  ///< #probes: where they rest, and 1 / radius
+    std::vector<double> own;               ///< #probes: to be written
+
+    explicit Reaches(std::span<const Probe> probes) : own(probes.size()) {
+        for (const Probe& probe : probes) {
+            x.push_back(probe.rest.x), y.push_back(probe.rest.y);
+            per_radius.push_back(1 / probe.radius);
+        }
+    }
+};
+
+/// own = the squared distance to each probe, in radii
+void measure(Reaches& reaches, glm::dvec2 vertex) {
+    const double *x = reaches.x.data(), *y = reaches.y.data(), *per_radius = reaches.per_radius.data();
+    double* own = reaches.own.data();
+    for (std::size_t i = 0; i < reaches.own.size(); ++i) {
+        // In radii before squaring, or tiny ones would give 0 / 0.
+        const double dx = (vertex.x - x[i]) * per_radius[i], dy = (vertex.y - y[i]) * per_radius[i];
+        own[i] = dx * dx + dy * dy;
     }
 }
 
-void gaussian_weights(std::span<const Probe> probes, glm::dvec2 vertex, std::span<float> weights) {
-    assert(weights.size() == probes.size());
+void weigh_by_inverse_distance(Reaches& reaches, double exponent, glm::dvec2 vertex,
+                               std::span<float> weights) {
+    assert(weights.size() == reaches.own.size());
+    measure(reaches, vertex);
+    // The probe that weighs most has the smallest distance^2 / radius^2; dividing by it keeps every weight in
+    // [0, 1] however near the probe is.
+    const double nearest = *std::min_element(reaches.own.begin(), reaches.own.end());
+    const double* own = reaches.own.data();
+    if (exponent == 2)
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            weights[i] = own[i] == nearest ? 1.0f : float(nearest / own[i]);
+    else
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            weights[i] = own[i] == nearest ? 1.0f : float(std::pow(nearest / own[i], exponent / 2));
+}
+
+void weigh_by_gaussian(Reaches& reaches, glm::dvec2 vertex, std::span<float> weights) {
+    assert(weights.size() == reaches.own.size());
+    measure(reaches, vertex);
     // In logarithms, where far probes do not vanish all at once: log(1 / (e^x - 1)) = -x - log(1 - e^-x).
-    const auto logarithm = [vertex](const Probe& probe) {
-        const double x = squared(in_radii(probe, vertex));
-        return x > 0 ? -x - std::log(-std::expm1(-x)) : std::numeric_limits<double>::infinity();
-    };
-    double most = -std::numeric_limits<double>::infinity();
-    for (const Probe& probe : probes) most = std::max(most, logarithm(probe));
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        const double own = logarithm(probes[i]);
-        weights[i] = own == most ? 1.0f : float(std::exp(own - most));
-    }
+    for (double& x : reaches.own)
+        x = x > 0 ? -x - std::log(-std::expm1(-x)) : std::numeric_limits<double>::infinity();
+    const double most = *std::max_element(reaches.own.begin(), reaches.own.end());
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        weights[i] = reaches.own[i] == most ? 1.0f : float(std::exp(reaches.own[i] - most));
+}
+
+}  // namespace
+
+void inverse_distance_weights(std::span<const Probe> probes, double exponent, glm::dvec2 vertex,
+                              std::span<float> weights) {
+    Reaches reaches(probes);
+    weigh_by_inverse_distance(reaches, exponent, vertex, weights);
+}
+
+void gaussian_weights(std::span<const Probe> probes, glm::dvec2 vertex, std::span<float> weights) {
+    Reaches reaches(probes);
+    weigh_by_gaussian(reaches, vertex, weights);
 }
 
 void check_given_up(const WeightInput& input) {
@@ -53,15 +92,20 @@ void check_given_up(const WeightInput& input) {
 
 namespace {
 
-/// A scheme that looks at one vertex at a time: at(vertex, row).
+/// A scheme that looks at one vertex at a time: at(reaches, vertex, row).
 template <class At>
 std::vector<float> table_by_vertex(const WeightInput& input, At at) {
     const std::size_t probes = input.probes.size(), vertices = input.mesh.rest.size();
+    constexpr std::size_t as_many_as = 8;  // a weight is about as much work as that many of a deformation
     std::vector<float> table(vertices * probes);
-    for (std::size_t v = 0; v < vertices; ++v) {
-        if (v % 4096 == 0) check_given_up(input);
-        at(input.mesh.rest[v], std::span(table).subspan(v * probes, probes));
-    }
+    over_blocks({0, vertices}, vertices, probes * as_many_as, [&](VertexRun part) {
+        Reaches reaches(input.probes);
+        for (std::size_t v = part.first; v < part.first + part.count; ++v) {
+            if (v % 4096 == 0) check_given_up(input);
+            at(reaches, input.mesh.rest[v], std::span(table).subspan(v * probes, probes));
+        }
+        return std::size_t{0};
+    });
     // A probe's own vertex is its rest rounded to floats.
     for (std::size_t i = 0; i < probes; ++i) {
         if (input.mesh.anchors[i] == no_vertex) continue;
@@ -73,14 +117,14 @@ std::vector<float> table_by_vertex(const WeightInput& input, At at) {
 }
 
 std::vector<float> inverse_distance_table(const WeightInput& input) {
-    return table_by_vertex(input, [&input](glm::dvec2 vertex, std::span<float> row) {
-        inverse_distance_weights(input.probes, input.exponent, vertex, row);
+    return table_by_vertex(input, [&input](Reaches& reaches, glm::dvec2 vertex, std::span<float> row) {
+        weigh_by_inverse_distance(reaches, input.exponent, vertex, row);
     });
 }
 
 std::vector<float> gaussian_table(const WeightInput& input) {
-    return table_by_vertex(input, [&input](glm::dvec2 vertex, std::span<float> row) {
-        gaussian_weights(input.probes, vertex, row);
+    return table_by_vertex(input, [](Reaches& reaches, glm::dvec2 vertex, std::span<float> row) {
+        weigh_by_gaussian(reaches, vertex, row);
     });
 }
 

@@ -108,6 +108,37 @@ void first_dab(benchmark::State& state) {
 }
 BENCHMARK(first_dab)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
 
+/// From the document's change to the deformed vertices, with so many cells and 16 probes before it.
+template <class Change>
+void change_to_vertices(benchmark::State& state, const char* scheme, int cells, Change change) {
+    Document document = document_with(2048, 2048, cells, 16, 200);
+    document.weights.scheme = scheme;
+    Deformation deformation;
+    update(deformation, document);
+    int turn = 0;
+    for (auto _ : state) {
+        change(document, turn++);
+        update(deformation, document);
+    }
+    state.counters["vertices"] = double(deformation.now.size());
+}
+
+/// A probe more, and at the next turn it is taken away: the mean of both.
+void probe_more_or_less(benchmark::State& state, const char* scheme, int cells) {
+    change_to_vertices(state, scheme, cells, [](Document& document, int turn) {
+        if (turn % 2 == 0)
+            document.probes.push_back(new_probe(document, {1234, 567 + turn}));
+        else
+            document.probes.pop_back();
+    });
+}
+
+void rest_moved(benchmark::State& state, const char* scheme, int cells) {
+    change_to_vertices(state, scheme, cells, [](Document& document, int turn) {
+        document.probes[0].rest = glm::dvec2(900 + turn % 90, 1100);
+    });
+}
+
 void first_binding(benchmark::State& state, const char* scheme, int cells) {
     Document document = document_with(2048, 2048, cells, 20, 0);
     document.weights.scheme = scheme;
@@ -133,6 +164,12 @@ const bool registered = [] {
             ->Unit(benchmark::kMillisecond)
             ->UseRealTime();  // some work on two threads
     };
+    for (const WeightScheme& scheme : weight_schemes()) {
+        const std::string name = std::string(scheme.name) + "/1000";
+        if (scheme.name == "biharmonic") continue;  // minutes
+        add("probe_more_or_less/" + name, probe_more_or_less, scheme.name.data(), 1000);
+        add("rest_moved/" + name, rest_moved, scheme.name.data(), 1000);
+    }
     for (const WeightScheme& scheme : weight_schemes())
         for (const int cells : {100, 300}) {
             const std::string name = std::string(scheme.name) + "/" + std::to_string(cells);
