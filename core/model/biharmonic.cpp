@@ -1,14 +1,13 @@
 // Bounded biharmonic weights (Jacobson, Baran, Popovic & Sorkine 2011): as smooth as can be within the shape,
 // and never beside [0, 1].
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
 
 #include "model/error.h"
-#include "model/panel_factor.h"
+#include "model/panel_cholesky.h"
 
 namespace probewarp {
 
@@ -53,30 +52,17 @@ constexpr float over_relaxation = 1.8f;
 /// it comes gently as a probe crosses an edge.
 double hold(double share) { return 300 * share * share; }
 
-/// Runs work(0), ..., work(count - 1) on two threads. What is thrown comes through from either.
-template <class Work>
-void on_two_threads(std::size_t count, Work work) {
-    std::atomic<std::size_t> next{0};
-    const auto take_turns = [&] {
-        for (std::size_t i = next++; i < count; i = next++) work(i);
-    };
-    auto other = std::async(std::launch::async, take_turns);
-    take_turns();
-    other.get();
-}
-
 BiharmonicCache& prepared(WeightCache& cache) {
     if (!cache.biharmonic) {
         auto made = std::make_shared<BiharmonicCache>();
         const Eigen::VectorXd areas = lumped_areas(cache.shape);
         const SparseMatrix stiffness = laplacian(cache.shape);
         const SparseMatrix energy = stiffness * areas.cwiseInverse().asDiagonal() * stiffness;
-        Eigen::PermutationMatrix<Eigen::Dynamic> back;
-        Eigen::AMDOrdering<int>()(energy, back);
-        const Eigen::PermutationMatrix<Eigen::Dynamic> order = back.inverse();
+        const auto order = elimination_order(energy);
         made->order = order.indices();
         made->areas = order * areas;
-        made->energy = order * energy * back;
+        made->energy = energy.twistedBy(order);
+        made->panels = panels_of(made->energy);
         cache.biharmonic = std::move(made);
     }
     return *cache.biharmonic;
@@ -98,18 +84,14 @@ void factor_rungs(const WeightInput& input, BiharmonicCache& cache, std::size_t 
     for (const Rounds& rung : ladder) rungs.push_back({std::min(rung.rho * unit, stiffest), {}});
     const auto same = [](const auto& a, const auto& b) { return a.rho == b.rho; };
     if (std::equal(rungs.begin(), rungs.end(), cache.rungs.begin(), cache.rungs.end(), same)) return;
-    Panels panels;
-    on_two_threads(rungs.size(), [&](std::size_t i) {
-        check_given_up(input);
+    const PanelCholesky prepared = prepare_cholesky(cache.energy);
+    oneapi::tbb::parallel_for(std::size_t{0}, rungs.size(), [&](std::size_t i) {
         SparseMatrix matrix = cache.energy;
         matrix.diagonal() += rungs[i].rho * cache.areas;
-        const Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>> factor(matrix);
-        check_factored(factor.info());
-        const SparseMatrix& lower = factor.matrixL().nestedExpression();
-        if (i == 0) panels = panels_of(lower);
-        rungs[i].factor = panel_values(i == 0 ? panels : panels_of(lower), lower);
+        PanelCholesky cholesky = prepared;
+        update_cholesky(cholesky, matrix, [&] { check_given_up(input); });
+        rungs[i].factor.assign(cholesky.values.begin(), cholesky.values.end());
     });
-    cache.panels = std::move(panels);
     cache.rungs = std::move(rungs);
 }
 
@@ -118,7 +100,7 @@ void factor_rungs(const WeightInput& input, BiharmonicCache& cache, std::size_t 
 std::vector<std::vector<float>> held_factors(const WeightInput& input, const BiharmonicCache& cache,
                                              std::span<const Place> places) {
     std::vector<std::vector<float>> factors(cache.rungs.size());
-    on_two_threads(factors.size(), [&](std::size_t i) {
+    oneapi::tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t i) {
         factors[i] = cache.rungs[i].factor;
         DiagonalRaiser raiser(cache.panels);
         for (const Place& place : places) {
@@ -143,29 +125,29 @@ struct Pull {
 /// out, is what has to be cut off at the bounds: cut off it is the bounded half of the search, and what is
 /// cut off is the disagreement that has added up (their scaled dual variable). All in the factor's order.
 void search(const WeightInput& input, const Panels& panels, std::span<const float> factor,
-            const Eigen::ArrayXf& rho_areas, std::span<const Pull> pulls, int rounds, FloatSides& state) {
-    FloatSides smooth(state.rows(), abreast);
+            const Eigen::ArrayXf& rho_areas, std::span<const Pull> pulls, int rounds, Sides<float>& state) {
+    Sides<float> smooth(state.rows(), side_by_side<float>);
     for (int round = 0; round < rounds; ++round) {
         check_given_up(input);
         for (Eigen::Index v = 0; v < state.rows(); ++v)
             smooth.row(v) = rho_areas[v] * (2 * state.row(v).max(0.0f).min(1.0f) - state.row(v));
         for (const Pull& pull : pulls) smooth(pull.row, pull.column) += pull.by;
-        solve_by_panels(panels, factor, smooth);
+        solve_by_panels<float>(panels, factor, smooth);
         for (Eigen::Index v = 0; v < state.rows(); ++v)
             state.row(v) += over_relaxation * (smooth.row(v) - state.row(v).max(0.0f).min(1.0f));
     }
 }
 
-/// The shares of `abreast` places from `first` on, or of those that are left: #vertices, in the factor's
-/// order; a place alone on its island has all from the start.
-FloatSides shares_of(const WeightInput& input, const BiharmonicCache& cache,
-                     std::span<const std::vector<float>> factors, std::span<const Place> places,
-                     std::size_t first) {
-    const std::size_t columns = std::min<std::size_t>(abreast, places.size() - first);
+/// The shares of `side_by_side<float>` places from `first` on, or of those that are left: #vertices, in the
+/// factor's order; a place alone on its island has all from the start.
+Sides<float> shares_of(const WeightInput& input, const BiharmonicCache& cache,
+                       std::span<const std::vector<float>> factors, std::span<const Place> places,
+                       std::size_t first) {
+    const std::size_t columns = std::min<std::size_t>(side_by_side<float>, places.size() - first);
     std::vector<float> start(std::size_t(input.islands.count), 0.0f);  // 1 / the island's places
     for (const Place& place : places) ++start[std::size_t(place.island)];
     for (float& count : start) count = 1 / count;
-    FloatSides state = FloatSides::Zero(cache.order.size(), abreast);
+    Sides<float> state = Sides<float>::Zero(cache.order.size(), side_by_side<float>);
     std::vector<Pull> pulls;
     for (std::size_t k = 0; k < columns; ++k) {
         const Place& place = places[first + k];
@@ -180,7 +162,7 @@ FloatSides shares_of(const WeightInput& input, const BiharmonicCache& cache,
     for (std::size_t rung = 0; rung < factors.size(); ++rung) {
         const double next = cache.rungs[rung].rho;
         // The disagreement is in units of 1 / rho.
-        const FloatSides bounded = state.max(0.0f).min(1.0f);
+        const Sides<float> bounded = state.max(0.0f).min(1.0f);
         state = bounded + float(rho / next) * (state - bounded);
         rho = next;
         const Eigen::ArrayXf rho_areas = (rho * cache.areas).cast<float>();
@@ -207,16 +189,18 @@ std::vector<float> biharmonic_table(const WeightInput& input) {
 
     const std::size_t probes = input.probes.size();
     std::vector<float> table(input.mesh.rest.size() * probes, 0.0f);
-    on_two_threads((places.size() + abreast - 1) / abreast, [&](std::size_t block) {
-        const std::size_t first = block * abreast;
-        const FloatSides shares = shares_of(input, biharmonic, factors, places, first);
-        for (std::size_t v = 0; v < shape.vertices; ++v)
-            for (std::size_t p = first; p < std::min(first + abreast, places.size()); ++p)
-                for (const std::size_t i : places[p].probes)
-                    table[v * probes + i] =
-                        shares(biharmonic.order[Eigen::Index(v)], Eigen::Index(p - first)) /
-                        float(places[p].probes.size());
-    });
+    oneapi::tbb::parallel_for(
+        std::size_t{0}, (places.size() + side_by_side<float> - 1) / side_by_side<float>,
+        [&](std::size_t block) {
+            const std::size_t first = block * side_by_side<float>;
+            const Sides<float> shares = shares_of(input, biharmonic, factors, places, first);
+            for (std::size_t v = 0; v < shape.vertices; ++v)
+                for (std::size_t p = first; p < std::min(first + side_by_side<float>, places.size()); ++p)
+                    for (const std::size_t i : places[p].probes)
+                        table[v * probes + i] =
+                            shares(biharmonic.order[Eigen::Index(v)], Eigen::Index(p - first)) /
+                            float(places[p].probes.size());
+        });
     settle_rows(input, places, table);
     return table;
 }

@@ -1,33 +1,26 @@
 // Weights that are harmonic within the shape: each probe is tied to the grid, and between them the heat of
 // one held at 1 spreads among the others held at 0.
-#include <Eigen/LU>
+#include <oneapi/tbb/parallel_for.h>
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <set>
 
-#include "model/shape_laplacian.h"
+#include "model/panel_cholesky.h"
 
 namespace probewarp {
 
-/// From one table to the next, of one shape.
+/// From one table to the next, of one shape. All but `order` itself is in the order of elimination.
 struct HarmonicCache {
+    Eigen::VectorXi order;  ///< #vertices: each one's row
     SparseMatrix laplacian;
-    /// The Laplacian with 1 added at each island's first vertex (grounded), which makes it definite.
-    std::optional<Cholesky> grounded;
-    std::map<std::uint32_t, Eigen::VectorXd> columns;  ///< of the grounded one's inverse, by vertex
-    Cholesky direct;                                   ///< with the probes of the moment
-    bool direct_ordered = false;
+    PanelCholesky cholesky;  ///< of the Laplacian with the ties of the last table
 };
 
 namespace {
-
-/// Where the update by columns would take more than this it is no longer the quick way.
-constexpr std::size_t most_columns = 192, most_column_entries = std::size_t{1} << 24;
 
 constexpr double fixed = std::numeric_limits<double>::infinity();
 
@@ -41,10 +34,6 @@ struct Ties {
     std::vector<std::uint32_t> vertices;  ///< ascending
     std::vector<double> stiffness;        ///< as `vertices`: of all its ties; `fixed` on a place
     std::vector<Tie> ties;
-    /// How much of the pull on the tie's vertex is this tie's.
-    double share(const Tie& tie) const {
-        return tie.stiffness == fixed ? 1 : tie.stiffness / stiffness[tie.vertex];
-    }
 };
 
 /// The stiffness of the ties from a place to its triangle's corners. On an unbounded grid the potential
@@ -152,157 +141,91 @@ std::vector<std::uint32_t> first_vertices(const WeightInput& input) {
     return first;
 }
 
-/// The columns of the grounded inverse at the tied vertices, and no others where they are many.
-void find_columns(const WeightInput& input, HarmonicCache& cache, const Ties& ties) {
-    if (!cache.grounded) {
-        SparseMatrix grounded = cache.laplacian;
-        for (const std::uint32_t v : first_vertices(input))
-            grounded.coeffRef(Eigen::Index(v), Eigen::Index(v)) += 1;
-        cache.grounded.emplace(grounded);
-        check_factored(cache.grounded->info());
-    }
-    for (const std::uint32_t vertex : ties.vertices) {
-        if (cache.columns.contains(vertex)) continue;
-        check_given_up(input);
-        cache.columns[vertex] =
-            cache.grounded->solve(Eigen::VectorXd::Unit(cache.laplacian.rows(), Eigen::Index(vertex)));
-    }
-    if (cache.columns.size() * std::size_t(cache.laplacian.rows()) > most_column_entries)
-        std::erase_if(cache.columns, [&](const auto& column) {
-            return !std::binary_search(ties.vertices.begin(), ties.vertices.end(), column.first);
-        });
-}
+/// The equations (L + ties) x = ties' pulls, the fixed vertices taken out of them. In the order of
+/// elimination.
+struct Equations {
+    SparseMatrix matrix;
+    using Pull = std::pair<Eigen::Index, double>;  ///< row and right-hand side
+    std::vector<std::vector<Pull>> pulls;          ///< #places
+};
 
-/// x = Y s + c, with Y the columns, s the ties' pulls and c a constant on each island. The pulls on an island
-/// cancel out, so that nothing flows to the ground and L x = s; and each is its tie's stiffness times
-/// (target - x):
-///     [ C + G   E ] [ s ]   [ targets ]      G: Y at the tied vertices; C: 1 / stiffness, 0 where fixed
-///     [ E^T     0 ] [ c ] = [    0    ]      E: 1 for the tied vertex's island
-/// (Woodbury's identity for the ties, with the ground taken out exactly.)
-void solve_by_columns(const WeightInput& input, HarmonicCache& cache, std::span<const Place> places,
-                      const Ties& ties, const TakeShares& take) {
-    find_columns(input, cache, ties);
-    const auto tied = Eigen::Index(ties.vertices.size()), across = Eigen::Index(places.size());
-    std::vector<const Eigen::VectorXd*> columns;
-    for (const std::uint32_t vertex : ties.vertices) columns.push_back(&cache.columns.at(vertex));
-
-    std::vector<Eigen::Index> constants(std::size_t(input.islands.count), -1);
-    Eigen::Index size = tied;
-    for (const Place& place : places)
-        if (auto& constant = constants[std::size_t(place.island)]; constant < 0) constant = size++;
-    Eigen::MatrixXd bordered = Eigen::MatrixXd::Zero(size, size);
-    for (Eigen::Index j = 0; j < tied; ++j) {
-        const std::uint32_t vertex = ties.vertices[std::size_t(j)];
-        for (Eigen::Index i = 0; i < tied; ++i) bordered(j, i) = (*columns[std::size_t(i)])[vertex];
-        bordered(j, j) += 1 / ties.stiffness[std::size_t(j)];
-        const Eigen::Index constant = constants[std::size_t(input.islands.of[vertex])];
-        bordered(j, constant) = bordered(constant, j) = 1;
-    }
-    Eigen::MatrixXd targets = Eigen::MatrixXd::Zero(size, across);
-    for (const auto& tie : ties.ties)
-        targets(Eigen::Index(tie.vertex), Eigen::Index(tie.place)) += ties.share(tie);
-    const Eigen::MatrixXd pulls = bordered.partialPivLu().solve(targets);
-
-    // A few rows at a time, so that they stay near the processor.
-    constexpr Eigen::Index step = 128;
-    const Eigen::Index vertices = cache.laplacian.rows();
-    Eigen::MatrixXd some(step, tied);
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> shares;
-    for (Eigen::Index first = 0; first < vertices; first += step) {
-        check_given_up(input);
-        const Eigen::Index rows = std::min(step, vertices - first);
-        for (Eigen::Index j = 0; j < tied; ++j)
-            some.col(j).head(rows) = columns[std::size_t(j)]->segment(first, rows);
-        shares.noalias() = some.topRows(rows) * pulls.topRows(tied);
-        for (Eigen::Index row = 0; row < rows; ++row)
-            if (const auto c = constants[std::size_t(input.islands.of[std::size_t(first + row)])]; c >= 0)
-                shares.row(row) += pulls.row(c);
-        take(std::size_t(first), 0, {shares.data(), std::size_t(shares.size())}, places.size());
-    }
-}
-
-/// (L + ties) x = ties' pulls, the fixed vertices taken out of the equations.
-void solve_directly(const WeightInput& input, HarmonicCache& cache, std::span<const Place> places,
-                    const Ties& ties, const TakeShares& take) {
-    const Eigen::Index vertices = cache.laplacian.rows();
-    std::vector<Eigen::Index> place_of(std::size_t(vertices), -1);  // of the fixed vertices
-    using Pull = std::pair<Eigen::Index, double>;                   // vertex and right-hand side
-    std::vector<std::vector<Pull>> pulls(places.size());
-    SparseMatrix matrix = cache.laplacian;
+Equations equations_of(const WeightInput& input, const HarmonicCache& cache, std::span<const Place> places) {
+    const Ties ties = tie_down(input.cache->shape, places);
+    Equations equations{cache.laplacian, std::vector<std::vector<Equations::Pull>>(places.size())};
+    SparseMatrix& matrix = equations.matrix;
+    std::vector<Eigen::Index> place_of(std::size_t(matrix.rows()), -1);  // of the fixed vertices
+    const auto row_of = [&](std::uint32_t vertex) { return Eigen::Index(cache.order[Eigen::Index(vertex)]); };
     for (const auto& tie : ties.ties) {
-        const auto vertex = Eigen::Index(ties.vertices[tie.vertex]);
+        const Eigen::Index row = row_of(ties.vertices[tie.vertex]);
         const double pull = tie.stiffness == fixed ? 1 : tie.stiffness;
         if (tie.stiffness == fixed)
-            place_of[std::size_t(vertex)] = Eigen::Index(tie.place);
+            place_of[std::size_t(row)] = Eigen::Index(tie.place);
         else
-            matrix.coeffRef(vertex, vertex) += pull;
-        pulls[tie.place].emplace_back(vertex, pull);
+            matrix.coeffRef(row, row) += pull;
+        equations.pulls[tie.place].emplace_back(row, pull);
     }
     const auto with_places = inhabited(input, places);
     const auto first = first_vertices(input);
     for (std::size_t island = 0; island < first.size(); ++island)
-        if (!with_places[island])
-            matrix.coeffRef(Eigen::Index(first[island]), Eigen::Index(first[island])) += 1;
+        if (!with_places[island]) matrix.coeffRef(row_of(first[island]), row_of(first[island])) += 1;
     // Zeros stay in the matrix, so that its pattern, and with it the order of elimination, is always the
     // same.
-    for (Eigen::Index j = 0; j < vertices; ++j)
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j)
         for (SparseMatrix::InnerIterator at(matrix, j); at; ++at) {
             const Eigen::Index of_row = place_of[std::size_t(at.row())], of_column = place_of[std::size_t(j)];
             if (of_row < 0 && of_column < 0) continue;
-            if (of_row < 0) pulls[std::size_t(of_column)].emplace_back(at.row(), -at.value());
+            if (of_row < 0) equations.pulls[std::size_t(of_column)].emplace_back(at.row(), -at.value());
             at.valueRef() = at.row() == j ? 1 : 0;
         }
-    if (!cache.direct_ordered) cache.direct.analyzePattern(matrix);
-    cache.direct_ordered = true;
-    check_given_up(input);
-    cache.direct.factorize(matrix);
-    check_factored(cache.direct.info());
+    return equations;
+}
 
-    const auto& order = cache.direct.permutationP().indices();
-    Sides sides(vertices, side_by_side), shares(vertices, side_by_side);
-    for (std::size_t from = 0; from < places.size(); from += side_by_side) {
-        check_given_up(input);
-        const std::size_t across = std::min<std::size_t>(side_by_side, places.size() - from);
-        sides.setZero();
-        for (std::size_t k = 0; k < across; ++k)
-            for (const auto& [vertex, pull] : pulls[from + k]) sides(order[vertex], Eigen::Index(k)) += pull;
-        solve_in_factor_order(cache.direct, sides);
-        // Packed, for there may be fewer than a full row.
-        for (Eigen::Index v = 0; v < vertices; ++v)
-            for (std::size_t k = 0; k < across; ++k)
-                shares.data()[std::size_t(v) * across + k] = sides(order[v], Eigen::Index(k));
-        take(0, from, {shares.data(), std::size_t(vertices) * across}, across);
+HarmonicCache& prepared(WeightCache& cache) {
+    if (!cache.harmonic) {
+        auto made = std::make_shared<HarmonicCache>();
+        const SparseMatrix matrix = laplacian(cache.shape);
+        const auto order = elimination_order(matrix);
+        made->order = order.indices();
+        made->laplacian = matrix.twistedBy(order);
+        made->cholesky = prepare_cholesky(made->laplacian);
+        cache.harmonic = std::move(made);
     }
+    return *cache.harmonic;
 }
 
 }  // namespace
 
 void harmonic_shares(const WeightInput& input, WeightCache& cache, std::span<const Place> places,
-                     HarmonicWay way, const TakeShares& take) {
-    if (!cache.harmonic) {
-        cache.harmonic = std::make_shared<HarmonicCache>();
-        cache.harmonic->laplacian = laplacian(cache.shape);
-    }
-    const Ties ties = tie_down(cache.shape, places);
-    if (way == HarmonicWay::by_size) {
-        const std::size_t columns = ties.vertices.size();
-        way = columns > most_columns || columns * cache.shape.vertices > most_column_entries
-                  ? HarmonicWay::directly
-                  : HarmonicWay::by_columns;
-    }
-    (way == HarmonicWay::directly ? solve_directly : solve_by_columns)(input, *cache.harmonic, places, ties,
-                                                                       take);
+                     const TakeShares& take) {
+    HarmonicCache& harmonic = prepared(cache);
+    const Equations equations = equations_of(input, harmonic, places);
+    update_cholesky(harmonic.cholesky, equations.matrix, [&] { check_given_up(input); });
+
+    constexpr std::size_t most = side_by_side<double>;
+    oneapi::tbb::parallel_for(std::size_t{0}, (places.size() + most - 1) / most, [&](std::size_t batch) {
+        check_given_up(input);
+        const std::size_t first = batch * most, across = std::min(most, places.size() - first);
+        const Eigen::Index vertices = harmonic.order.size();
+        Sides<double> sides = Sides<double>::Zero(vertices, Eigen::Index(most));
+        for (std::size_t k = 0; k < across; ++k)
+            for (const auto& [row, pull] : equations.pulls[first + k]) sides(row, Eigen::Index(k)) += pull;
+        solve_by_panels<double>(harmonic.cholesky.panels, harmonic.cholesky.values, sides);
+        std::vector<double> shares(std::size_t(vertices) * across);
+        for (Eigen::Index v = 0; v < vertices; ++v)
+            for (std::size_t k = 0; k < across; ++k)
+                shares[std::size_t(v) * across + k] = sides(harmonic.order[v], Eigen::Index(k));
+        take(first, shares, across);
+    });
 }
 
 std::vector<float> harmonic_table(const WeightInput& input) {
     WeightCache& cache = cache_for(input);
     const std::vector<Place> places = places_of(input, cache.shape);
     std::vector<float> table(input.mesh.rest.size() * input.probes.size(), 0.0f);
-    harmonic_shares(
-        input, cache, places, HarmonicWay::by_size,
-        [&](std::size_t vertex, std::size_t place, std::span<const double> shares, std::size_t across) {
-            write_shares(places, input.probes.size(), vertex, place, shares, across, table);
-        });
+    harmonic_shares(input, cache, places,
+                    [&](std::size_t place, std::span<const double> shares, std::size_t across) {
+                        write_shares(places, input.probes.size(), place, shares, across, table);
+                    });
     settle_rows(input, places, table);
     return table;
 }

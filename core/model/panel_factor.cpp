@@ -5,58 +5,6 @@
 
 namespace probewarp {
 
-namespace {
-
-/// Of a panel, in the factor's values.
-const float* own_rows(const Panels::Panel& panel, std::span<const float> values) {
-    return values.data() + panel.values;
-}
-const float* rows_below(const Panels::Panel& panel, std::span<const float> values) {
-    return own_rows(panel, values) + std::size_t(panel.columns) * std::size_t(panel.columns);
-}
-
-}  // namespace
-
-Panels panels_of(const SparseMatrix& lower) {
-    const int* starts = lower.outerIndexPtr();
-    const int* rows = lower.innerIndexPtr();
-    const int columns = int(lower.cols());
-    Panels panels;
-    panels.panel_of.resize(std::size_t(columns));
-    const auto continues = [&](int column) {  // the panel of the column before
-        const int before = starts[column - 1], entries = starts[column] - before;
-        return entries >= 2 && rows[before + 1] == column &&
-               starts[column + 1] - starts[column] == entries - 1;
-    };
-    for (int first = 0, end; first < columns; first = end) {
-        for (end = first + 1; end < columns && continues(end);) ++end;
-        const int below = starts[end - 1] + 1;
-        Panels::Panel panel{first, end - first, panels.rows.size(), starts[end] - below, panels.value_count};
-        panels.rows.insert(panels.rows.end(), rows + below, rows + starts[end]);
-        panels.value_count += panel.value_count();
-        for (int column = first; column < end; ++column)
-            panels.panel_of[std::size_t(column)] = int(panels.panels.size());
-        panels.panels.push_back(panel);
-    }
-    return panels;
-}
-
-std::vector<float> panel_values(const Panels& panels, const SparseMatrix& lower) {
-    std::vector<float> values(panels.value_count, 0.0f);
-    for (const Panels::Panel& panel : panels.panels)
-        for (int column = 0; column < panel.columns; ++column) {
-            const double* from = lower.valuePtr() + lower.outerIndexPtr()[panel.first + column];
-            const auto value = [&](int row) -> float& {
-                return values[panel.values + std::size_t(row) * std::size_t(panel.columns) +
-                              std::size_t(column)];
-            };
-            value(column) = float(1 / *from);
-            for (int row = column + 1; row < panel.columns + panel.rows_below; ++row)
-                value(row) = float(*++from);
-        }
-    return values;
-}
-
 DiagonalRaiser::DiagonalRaiser(const Panels& panels)
     : panels_(panels), update_(panels.panel_of.size(), std::array<float, 3>{}) {}
 
@@ -141,48 +89,51 @@ void DiagonalRaiser::raise_panel(const Panels::Panel& panel, std::span<float> va
 
 namespace {
 
-using Row = Eigen::Array<float, 1, abreast>;
+template <class T>
+using Row = Eigen::Array<T, 1, side_by_side<T>>;
 
 /// L x = sides, for the panel's columns and what they take from the rows below.
-void forward(const Panels& panels, const Panels::Panel& panel, std::span<const float> values,
-             FloatSides& sides) {
-    const float* entries = own_rows(panel, values);
+template <class T>
+void forward(const Panels& panels, const Panels::Panel& panel, const T* entries, Sides<T>& sides) {
     for (int j = 0; j < panel.columns; ++j, entries += panel.columns) {
-        Row x = sides.row(panel.first + j);
+        Row<T> x = sides.row(panel.first + j);
         for (int k = 0; k < j; ++k) x -= entries[k] * sides.row(panel.first + k);
         sides.row(panel.first + j) = x * entries[j];
     }
     for (int i = 0; i < panel.rows_below; ++i, entries += panel.columns) {
         const int row = panels.rows[panel.below + std::size_t(i)];
-        Row x = sides.row(row);
+        Row<T> x = sides.row(row);
         for (int k = 0; k < panel.columns; ++k) x -= entries[k] * sides.row(panel.first + k);
         sides.row(row) = x;
     }
 }
 
 /// Takes what the rows below have from `count` columns at once, so that each of these rows is read once.
-template <int count>
-void take_below(const Panels& panels, const Panels::Panel& panel, std::span<const float> values, int column,
-                FloatSides& sides) {
-    std::array<Row, count> x;
+/// entries: the rows below
+template <int count, class T>
+void take_below(const Panels& panels, const Panels::Panel& panel, const T* entries, int column,
+                Sides<T>& sides) {
+    std::array<Row<T>, count> x;
     for (int k = 0; k < count; ++k) x[std::size_t(k)] = sides.row(panel.first + column + k);
-    const float* entries = rows_below(panel, values) + column;
+    entries += column;
     for (int i = 0; i < panel.rows_below; ++i, entries += panel.columns) {
-        const Row y = sides.row(panels.rows[panel.below + std::size_t(i)]);
+        const Row<T> y = sides.row(panels.rows[panel.below + std::size_t(i)]);
         for (int k = 0; k < count; ++k) x[std::size_t(k)] -= entries[k] * y;
     }
     for (int k = 0; k < count; ++k) sides.row(panel.first + column + k) = x[std::size_t(k)];
 }
 
 /// L^T x = sides, for the panel's columns.
-void backward(const Panels& panels, const Panels::Panel& panel, std::span<const float> values,
-              FloatSides& sides) {
+template <class T>
+void backward(const Panels& panels, const Panels::Panel& panel, const T* own, Sides<T>& sides) {
+    const T* below = own + panel.columns * panel.columns;
+    constexpr int together = sizeof(T) == 4 ? 4 : 2;  // as the plainest processors have registers for
     int column = 0;
-    for (; column + 4 <= panel.columns; column += 4) take_below<4>(panels, panel, values, column, sides);
-    for (; column < panel.columns; ++column) take_below<1>(panels, panel, values, column, sides);
-    const float* own = own_rows(panel, values);
+    for (; column + together <= panel.columns; column += together)
+        take_below<together>(panels, panel, below, column, sides);
+    for (; column < panel.columns; ++column) take_below<1>(panels, panel, below, column, sides);
     for (int j = panel.columns; j-- > 0;) {
-        Row x = sides.row(panel.first + j);
+        Row<T> x = sides.row(panel.first + j);
         for (int k = j + 1; k < panel.columns; ++k)
             x -= own[k * panel.columns + j] * sides.row(panel.first + k);
         sides.row(panel.first + j) = x * own[j * panel.columns + j];
@@ -191,10 +142,15 @@ void backward(const Panels& panels, const Panels::Panel& panel, std::span<const 
 
 }  // namespace
 
-void solve_by_panels(const Panels& panels, std::span<const float> values, FloatSides& sides) {
-    for (const Panels::Panel& panel : panels.panels) forward(panels, panel, values, sides);
+template <class T>
+void solve_by_panels(const Panels& panels, std::span<const T> values, Sides<T>& sides) {
+    for (const Panels::Panel& panel : panels.panels)
+        forward(panels, panel, values.data() + panel.values, sides);
     for (auto panel = panels.panels.rbegin(); panel != panels.panels.rend(); ++panel)
-        backward(panels, *panel, values, sides);
+        backward(panels, *panel, values.data() + panel->values, sides);
 }
+
+template void solve_by_panels(const Panels&, std::span<const float>, Sides<float>&);
+template void solve_by_panels(const Panels&, std::span<const double>, Sides<double>&);
 
 }  // namespace probewarp

@@ -1,6 +1,6 @@
-// A sparse Cholesky factor laid out in panels of columns alike, in floats: solving for many right-hand sides
-// side by side, and adding to the matrix's diagonal without factoring anew. Private to the biharmonic
-// weights.
+// A sparse Cholesky factor laid out in panels of columns alike: solving for several right-hand sides side by
+// side, and adding to the matrix's diagonal without factoring anew. Private to the harmonic and the
+// biharmonic weights.
 #pragma once
 
 #include <array>
@@ -31,10 +31,6 @@ struct Panels {
     std::vector<int> panel_of;  ///< #columns
     std::size_t value_count = 0;
 };
-Panels panels_of(const SparseMatrix& lower);
-
-/// #value_count, as Panels tells. `lower` is L, with the panels' pattern.
-std::vector<float> panel_values(const Panels& panels, const SparseMatrix& lower);
 
 /// What is added to the matrix's diagonal at a row and column, in the factor's order; >= 0.
 struct Raise {
@@ -59,10 +55,13 @@ class DiagonalRaiser {
 };
 
 /// Right-hand sides that are solved together: a row holds one vertex's.
-inline constexpr int abreast = 12;
-using FloatSides = Eigen::Array<float, Eigen::Dynamic, abreast, Eigen::RowMajor>;
+template <class T>
+inline constexpr int side_by_side = sizeof(T) == 4 ? 12 : 8;
+template <class T>
+using Sides = Eigen::Array<T, Eigen::Dynamic, side_by_side<T>, Eigen::RowMajor>;
 
-/// Solves in place; the rows of `sides` stand in the factor's order.
-void solve_by_panels(const Panels& panels, std::span<const float> values, FloatSides& sides);
+/// Solves in place; the rows of `sides` stand in the factor's order. For float and double.
+template <class T>
+void solve_by_panels(const Panels& panels, std::span<const T> values, Sides<T>& sides);
 
 }  // namespace probewarp

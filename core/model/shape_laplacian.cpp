@@ -1,5 +1,7 @@
 #include "model/shape_laplacian.h"
 
+#include <Eigen/OrderingMethods>
+
 #include "model/error.h"
 
 namespace probewarp {
@@ -48,29 +50,16 @@ Eigen::VectorXd lumped_areas(const Shape& shape) {
     return areas;
 }
 
+Eigen::PermutationMatrix<Eigen::Dynamic> elimination_order(const SparseMatrix& matrix) {
+    Eigen::PermutationMatrix<Eigen::Dynamic> back;
+    Eigen::AMDOrdering<int>()(matrix, back);
+    return back.inverse();
+}
+
 void check_factored(Eigen::ComputationInfo info) {
     if (info != Eigen::Success)
         throw Error(
             "the weights cannot be worked out on this mesh; choose another scheme or another density");
-}
-
-void solve_in_factor_order(const Cholesky& factor, Sides& sides) {
-    // Eigen's own solve takes the right-hand sides one after another and reads the factor anew for each.
-    const SparseMatrix& lower = factor.matrixL().nestedExpression();
-    const int* starts = lower.outerIndexPtr();
-    const int* places = lower.innerIndexPtr();
-    const double* values = lower.valuePtr();
-    using Row = Eigen::Array<double, 1, side_by_side>;
-    for (Eigen::Index j = 0; j < lower.cols(); ++j) {
-        const Row x = sides.row(j) / values[starts[j]];
-        sides.row(j) = x;
-        for (int k = starts[j] + 1; k < starts[j + 1]; ++k) sides.row(places[k]) -= values[k] * x;
-    }
-    for (Eigen::Index j = lower.cols(); j-- > 0;) {
-        Row x = sides.row(j);
-        for (int k = starts[j] + 1; k < starts[j + 1]; ++k) x -= values[k] * sides.row(places[k]);
-        sides.row(j) = x / values[starts[j]];
-    }
 }
 
 }  // namespace probewarp

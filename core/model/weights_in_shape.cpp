@@ -163,11 +163,11 @@ std::vector<std::uint32_t> followed_probes(const WeightInput& input) {
     return followed(input, shape, places_of(input, shape));
 }
 
-void write_shares(std::span<const Place> places, std::size_t probes, std::size_t vertex, std::size_t place,
+void write_shares(std::span<const Place> places, std::size_t probes, std::size_t place,
                   std::span<const double> shares, std::size_t across, std::span<float> table) {
     for (std::size_t k = 0; k < shares.size(); ++k) {
         const Place& from = places[place + k % across];
-        float* row = table.data() + (vertex + k / across) * probes;
+        float* row = table.data() + k / across * probes;
         // Rounding leaves some a hair below 0.
         for (const std::size_t i : from.probes)
             row[i] = float(std::max(0.0, shares[k]) / double(from.probes.size()));

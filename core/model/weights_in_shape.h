@@ -80,25 +80,17 @@ WeightCache& cache_for(const WeightInput& input);
 /// where there is none.
 std::vector<float> geodesic_distances(const Shape& shape, const Place& place);
 
-/// How the harmonic shares are solved; the outcome is the same.
-enum class HarmonicWay {
-    by_size,     ///< whichever is quicker
-    by_columns,  ///< from kept columns of one inverse: quick to redo when a probe moves
-    directly,    ///< factored for these probes alone
-};
-
-/// Takes a part of the shares, row-major: of the grid vertices from `vertex` on and the places from `place`
-/// on.
-using TakeShares = std::function<void(std::size_t vertex, std::size_t place, std::span<const double> shares,
-                                      std::size_t places)>;
+/// Takes the shares of some places, from `place` on: #grid vertices x `across`, row-major. May be called by
+/// several threads at once.
+using TakeShares = std::function<void(std::size_t place, std::span<const double> shares, std::size_t across)>;
 
 /// The share of each place in each grid vertex: harmonic between the places, in [0, 1] and summing to 1 but
-/// for rounding. Unspecified on islands without a place.
+/// for rounding. Unspecified on islands without a place. The same, bit for bit, whatever the cache holds.
 void harmonic_shares(const WeightInput& input, WeightCache& cache, std::span<const Place> places,
-                     HarmonicWay way, const TakeShares& take);
+                     const TakeShares& take);
 
-/// Writes the part into the table (#vertices x #probes), each place's share divided among its probes.
-void write_shares(std::span<const Place> places, std::size_t probes, std::size_t vertex, std::size_t place,
+/// Writes the shares into the table (#vertices x #probes), each place's divided among its probes.
+void write_shares(std::span<const Place> places, std::size_t probes, std::size_t place,
                   std::span<const double> shares, std::size_t across, std::span<float> table);
 
 /// Divides each row by its largest, then sets the rows that are known: at a probe's anchor, and on an island

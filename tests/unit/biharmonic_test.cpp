@@ -1,5 +1,7 @@
 // The biharmonic weights: known answers, how near they come to the least energy, and that they do not depend
 // on how the probes came to where they are.
+#include <Eigen/SparseCholesky>
+
 #include "model/error.h"
 #include "model/shape_laplacian.h"
 #include "shape_scene.h"
@@ -79,7 +81,7 @@ struct Problem {
             rho = next;
             SparseMatrix matrix = held;
             matrix.diagonal() += rho * areas;
-            const Cholesky factor(matrix);
+            const Eigen::SimplicialLLT<SparseMatrix> factor(matrix);
             for (int round = 0; round < 400; ++round) {
                 smooth = factor.solve(pulls + rho * areas.asDiagonal() * (least - unbalanced));
                 least = (smooth + unbalanced).cwiseMax(0).cwiseMin(1);
