@@ -49,10 +49,12 @@ std::unique_ptr<Drawn> Drawer::draw(const Document& document, const Deformation&
     const Image& picture = document.picture->image;
     renderer_.set_picture(upload_picture(picture));
     renderer_.set_mesh(mesh_of(deformation));
-    if (plan_.options.deform == "shader")
-        renderer_.set_blend(weights_of(deformation), deformation.transformations, glm::vec2(centre(picture)));
-    else
+    if (plan_.options.deform == "shader") {
+        renderer_.set_weights(weights_of(deformation));
+        renderer_.set_pose(deformation.transformations, glm::vec2(centre(picture)));
+    } else {
         renderer_.set_positions(deformation.now, deformation.moved);
+    }
     show_heat(renderer_, deformation, plan_.options);
     auto drawn = std::make_unique<Drawn>(renderer_, document, deformation, plan_);
     while (!drawn->job.done()) {

@@ -107,7 +107,8 @@ struct App {
     std::string new_name;
     std::string field_label;  ///< of the panel field being edited
     bool quit = false;
-    int frames_wanted = 3;  ///< ImGui settles within a few frames of an event
+    unsigned long frames = 0;  ///< drawn
+    int frames_wanted = 3;     ///< ImGui settles within a few frames of an event
 
     /// Sizes of the design in pixels of this window.
     float px(double design) const { return float(design) * scale; }

@@ -38,6 +38,7 @@ Fonts load_fonts(float scale) {
     // Latin with its extensions, Greek, Cyrillic, punctuation, arrows and mathematical signs.
     static constexpr ImWchar text[] = {0x20,   0x24f,  0x370,  0x52f,  0x2010, 0x205e, 0x2190,
                                        0x21ff, 0x2200, 0x22ff, 0x25cf, 0x25cf, 0};
+    static constexpr ImWchar latin[] = {0x20, 0xff, 0};  // of the one sentence that is large
     const auto regular = {"opentype/inter/Inter-Regular.otf",
                           "truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf",
                           "truetype/dejavu/DejaVuSans.ttf"};
@@ -56,9 +57,12 @@ Fonts load_fonts(float scale) {
     fonts.text = load(regular, 13 * em * scale, text);
     fonts.strong = load(bold, 12.5f * em * scale, text);
     fonts.small = load(regular, 11.5f * em * scale, text);
-    fonts.large = load(bold, 18 * em * scale, text);
+    fonts.large = load(bold, 18 * em * scale, latin);
     fonts.icons = load(symbols, 20 * scale, icons.Data);
     fonts.icons_small = load(symbols, 16 * scale, icons.Data);
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    atlas.GetTexDataAsRGBA32(&pixels, &width, &height);
     return fonts;
 }
 

@@ -10,7 +10,8 @@ struct Fonts {
     ImFont *icons = nullptr, *icons_small = nullptr;
 };
 
-/// Fills ImGui's atlas. Where a font file is missing the next best one is used. The text outlives the call.
+/// Fills and rasterises ImGui's atlas, which nobody else may use meanwhile; needs no window. Where a font
+/// file is missing the next best one is used.
 Fonts load_fonts(float scale);
 
 /// Icons of the Material Design font (Debian's fonts-materialdesignicons-webfont), UTF-8.

@@ -15,13 +15,16 @@ namespace {
 
 constexpr int thumbnail_side = 320;
 
-/// The smallest mipmap that is still at least as large as a thumbnail.
-Image thumbnail(const Image& image) {
-    Image small = image;
+/// The mipmaps from the smallest that is still at least as large as a thumbnail.
+std::vector<Image> thumbnail(const Image& image) {
     std::vector<Image> levels = smaller_levels(image);
-    for (Image& level : levels)
-        if (std::max(level.width, level.height) >= thumbnail_side) small = std::move(level);
-    return small;
+    levels.insert(levels.begin(), image);
+    const auto large = [](const Image& level) {
+        return std::max(level.width, level.height) >= thumbnail_side;
+    };
+    const auto first_small = std::find_if_not(levels.begin() + 1, levels.end(), large);
+    levels.erase(levels.begin(), first_small - 1);
+    return levels;
 }
 
 void load_thumbnails(App& app) {
@@ -40,18 +43,19 @@ void load_thumbnails(App& app) {
     std::sort(app.samples.list.begin(), app.samples.list.end(),
               [](const auto& a, const auto& b) { return a.path < b.path; });
     for (const Sample& sample : app.samples.list)
-        start_job(app, "", JobKind::background,
-                  [path = sample.path](const auto&) -> std::function<void(App&)> {
-                      auto small = std::make_shared<Image>(thumbnail(read_document(path).picture->image));
-                      return [small, path](App& a) {
-                          for (Sample& s : a.samples.list)
-                              if (s.path == path) {
-                                  s.texture = preview_texture(*small);
-                                  s.width = small->width;
-                                  s.height = small->height;
-                              }
-                      };
-                  });
+        start_job(
+            app, "", JobKind::background, [path = sample.path](const auto&) -> std::function<void(App&)> {
+                const auto small =
+                    std::make_shared<const std::vector<Image>>(thumbnail(read_document(path).picture->image));
+                return [small, path](App& a) {
+                    for (Sample& s : a.samples.list)
+                        if (s.path == path) {
+                            s.texture = preview_texture(*small);
+                            s.width = small->front().width;
+                            s.height = small->front().height;
+                        }
+                };
+            });
 }
 
 void draw_sample(App& app, const Sample& sample, ImVec2 from, ImVec2 size) {
@@ -94,7 +98,9 @@ std::filesystem::path samples_folder() {
 }
 
 void draw_empty_state(App& app, float left, float top, float width, float height) {
-    if (!app.samples.begun) load_thumbnails(app);
+    // The window first; and what is being opened goes before thumbnails that may never be seen.
+    if (!app.samples.begun && is_busy(app)) return;
+    if (!app.samples.begun && app.frames > 0) load_thumbnails(app);
     const auto centred = [&](ImFont* font, const char* text, ImU32 colour, float y) {
         const ImVec2 size = font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, text);
         ImGui::GetWindowDrawList()->AddText(font, font->FontSize,

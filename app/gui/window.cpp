@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <future>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -220,12 +221,16 @@ void on_drop(GLFWwindow* window, int count, const char** paths) {
 void on_damage(GLFWwindow* window) { app_of(window).wake(); }
 void on_size(GLFWwindow* window, int, int) { app_of(window).wake(); }
 
+void use_fonts(App& app, const Fonts& fonts) {
+    app.fonts = fonts;
+    ImGui::GetIO().FontDefault = fonts.text;
+    apply_theme(app.theme, app.scale);
+}
+
 void rebuild_fonts(App& app) {
-    app.fonts = load_fonts(app.scale);
-    ImGui::GetIO().FontDefault = app.fonts.text;
+    use_fonts(app, load_fonts(app.scale));
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
-    apply_theme(app.theme, app.scale);
 }
 
 void on_content_scale(GLFWwindow* window, float scale, float) {
@@ -290,22 +295,36 @@ void set_callbacks(GLFWwindow* window) {
     glfwSetWindowContentScaleCallback(window, &on_content_scale);
 }
 
-/// ImGui with its two backends. The callbacks are ours and hand on to its own.
+/// ImGui itself; its fonts are rasterised on a thread of their own from the beginning on.
 struct Toolkit {
-    explicit Toolkit(GLFWwindow* window) {
+    std::future<Fonts> fonts;
+
+    explicit Toolkit(float scale) {
         ImGui::CreateContext();
         ImGui::GetIO().IniFilename = nullptr;
         ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-        ImGui_ImplGlfw_InitForOpenGL(window, false);
-        ImGui_ImplOpenGL3_Init("#version 330 core");
+        fonts = std::async(std::launch::async, &load_fonts, scale);
     }
     ~Toolkit() {
-        ImGui_ImplOpenGL3_Shutdown();
-        ImGui_ImplGlfw_Shutdown();
+        if (fonts.valid()) fonts.wait();
         ImGui::DestroyContext();
     }
     Toolkit(const Toolkit&) = delete;
     Toolkit& operator=(const Toolkit&) = delete;
+};
+
+/// Its two backends. The callbacks are ours and hand on to its own.
+struct ToolkitBackends {
+    explicit ToolkitBackends(GLFWwindow* window) {
+        ImGui_ImplGlfw_InitForOpenGL(window, false);
+        ImGui_ImplOpenGL3_Init("#version 330 core");
+    }
+    ~ToolkitBackends() {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+    }
+    ToolkitBackends(const ToolkitBackends&) = delete;
+    ToolkitBackends& operator=(const ToolkitBackends&) = delete;
 };
 
 void set_title(App& app) {
@@ -377,15 +396,18 @@ void wait_for_events(App& app) {
 }
 
 void run(App& app) {
-    // For the benchmark of the start: the first frame that shows the picture is the last.
+    // For the benchmark of the start: the first frame, or where there is a picture the first with it, is the
+    // last.
     const bool leaves_at_once = std::getenv("PROBEWARP_QUIT_AFTER_FIRST_FRAME") != nullptr;
+    const bool opens = is_busy(app);
     while (!app.quit) {
         wait_for_events(app);
         advance_jobs(app);
         handle_requests(app);
         set_title(app);
         draw_frame(app);
-        if (leaves_at_once && app.shown.picture) return;
+        ++app.frames;
+        if (leaves_at_once && (!opens || app.shown.picture)) return;
         release_late_keys(app);
         --app.frames_wanted;
     }
@@ -395,21 +417,22 @@ void run(App& app) {
 
 int run_window(const std::string& path) {
     const Glfw glfw;
-    const float scale = wanted_scale(glfwGetPrimaryMonitor());
-    GLFWwindow* window = open_window(scale);
-    load_gl(&glfwGetProcAddress);
     App app;
-    app.window = window;
-    app.scale = scale;
-    glfwSetWindowUserPointer(window, &app);
+    app.scale = wanted_scale(glfwGetPrimaryMonitor());
     app.editor.binds_elsewhere = true;
+    // The driver takes most of the time until the first frame: fonts and file are read meanwhile.
+    Toolkit toolkit(app.scale);
+    if (!path.empty()) open_path(app, path);
+    app.window = open_window(app.scale);
+    load_gl(&glfwGetProcAddress);
+    glfwSetWindowUserPointer(app.window, &app);
     app.renderer = std::make_unique<Renderer>();
     app.renderer_label = renderer_name();
-    const Toolkit toolkit(window);
-    set_callbacks(window);
-    if (!path.empty()) open_path(app, path);
+    use_fonts(app, toolkit.fonts.get());
+    const ToolkitBackends backends(app.window);
+    set_callbacks(app.window);
     run(app);
-    glfwHideWindow(window);  // a thread that is in the middle of something may take seconds to end
+    glfwHideWindow(app.window);  // a thread that is in the middle of something may take seconds to end
     return 0;
 }
 

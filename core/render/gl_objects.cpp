@@ -44,6 +44,18 @@ GlShader compiled(GLenum stage, const Shader& shader, const char* define) {
     return handle;
 }
 
+void link(const GlProgram& program, const std::string& files) {
+    glLinkProgram(program.name());
+    GLint good = GL_FALSE;
+    glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
+    if (good == GL_TRUE) return;
+    std::string log(4096, '\0');
+    GLsizei written = 0;
+    glGetProgramInfoLog(program.name(), GLsizei(log.size()), &written, log.data());
+    log.resize(std::size_t(written));
+    throw Error(fmt::format("{}: the graphics driver cannot link: {}", files, log));
+}
+
 }  // namespace
 
 GlBuffer make_buffer() { return GlBuffer(generated(glGenBuffers)); }
@@ -56,17 +68,16 @@ GlProgram make_program(const Shader& vertex, const Shader& fragment, const char*
     GlProgram program(glCreateProgram());
     glAttachShader(program.name(), first.name());
     glAttachShader(program.name(), second.name());
-    glLinkProgram(program.name());
-    GLint good = GL_FALSE;
-    glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
-    if (good != GL_TRUE) {
-        std::string log(4096, '\0');
-        GLsizei written = 0;
-        glGetProgramInfoLog(program.name(), GLsizei(log.size()), &written, log.data());
-        log.resize(std::size_t(written));
-        throw Error(fmt::format("{} with {}: the graphics driver cannot link them: {}", vertex.file,
-                                fragment.file, log));
-    }
+    link(program, fmt::format("{} with {}", vertex.file, fragment.file));
+    return program;
+}
+
+GlProgram make_feedback_program(const Shader& vertex, const char* captured) {
+    const auto shader = compiled(GL_VERTEX_SHADER, vertex, nullptr);
+    GlProgram program(glCreateProgram());
+    glAttachShader(program.name(), shader.name());
+    glTransformFeedbackVaryings(program.name(), 1, &captured, GL_INTERLEAVED_ATTRIBS);
+    link(program, std::string(vertex.file));
     return program;
 }
 

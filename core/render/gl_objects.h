@@ -56,6 +56,24 @@ struct Shader;
 /// the shader's file and the driver's log.
 GlProgram make_program(const Shader& vertex, const Shader& fragment, const char* define = nullptr);
 
+/// A program without fragments, whose vertices' output `captured` goes into a buffer. Throws Error likewise.
+GlProgram make_feedback_program(const Shader& vertex, const char* captured);
+
+/// A program that is made when it is first wanted: compiling takes its time, and many a run wants few.
+class LazyProgram {
+  public:
+    explicit LazyProgram(GlProgram (*make)()) : make_(make) {}
+    /// Throws Error as `make` does.
+    const GlProgram& get() {
+        if (program_.name() == 0) program_ = make_();
+        return program_;
+    }
+
+  private:
+    GlProgram (*make_)();
+    GlProgram program_;
+};
+
 /// The place of a uniform; throws Error where the program has none of that name.
 GLint uniform(const GlProgram& program, const char* name);
 

@@ -103,16 +103,18 @@ PictureTexture upload_picture(const Image& image) {
     return upload.take();
 }
 
-GlTexture preview_texture(const Image& image) {
+GlTexture preview_texture(std::span<const Image> levels) {
     GlTexture texture = make_texture();
     glBindTexture(GL_TEXTURE_2D, texture.name());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, GLint(levels.size()) - 1);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, image.width, image.height, 0, GL_RGBA,
-                 image.bits() == 16 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, pixel_bytes(image).data());
-    glGenerateMipmap(GL_TEXTURE_2D);
+    GLint level = 0;
+    for (const Image& image : levels)
+        glTexImage2D(GL_TEXTURE_2D, level++, GL_RGBA8, image.width, image.height, 0, GL_RGBA,
+                     image.bits() == 16 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, pixel_bytes(image).data());
     return texture;
 }
 

@@ -44,7 +44,8 @@ class PictureUpload {
 /// All of it at once.
 PictureTexture upload_picture(const Image& image);
 
-/// A texture of `image` for the window's toolkit to draw, smoothly scaled.
-GlTexture preview_texture(const Image& image);
+/// A texture for the window's toolkit to draw, smoothly scaled. levels: a picture and its mipmaps, down to
+/// one pixel. The driver could make these, but a software rasteriser would compile a shader to do so.
+GlTexture preview_texture(std::span<const Image> levels);
 
 }  // namespace probewarp

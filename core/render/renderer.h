@@ -9,12 +9,12 @@
 #include <glm/vec4.hpp>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "math/dual_complex.h"
 #include "model/image.h"
 #include "model/mesh.h"
 #include "model/probe.h"
+#include "render/drawn_mesh.h"
 #include "render/gl_objects.h"
 #include "render/picture_texture.h"
 
@@ -55,7 +55,8 @@ inline constexpr std::array<Colour, 4> heat_colours{
 
 class Renderer {
   public:
-    /// Needs a loaded context, which must outlive it. Throws Error where a shader does not compile.
+    /// Needs a loaded context, which must outlive it. What draws throws Error where a shader does not
+    /// compile.
     Renderer();
 
     void set_picture(PictureTexture picture);
@@ -63,10 +64,11 @@ class Renderer {
     /// The mesh as the processor deformed it. now: #vertices of the mesh, image pixels. Where it has not
     /// `moved`, all of the picture is drawn as it is, with the cells that the mesh leaves out.
     void set_positions(std::span<const glm::vec2> now, bool moved);
-    /// Has the vertex shader deform the mesh by DLB instead, until set_positions. Shapes as deform_dlb's.
-    /// Throws Error where the driver has no buffer that large.
-    void set_blend(std::span<const float> weights, std::span<const DualComplex<float>> transformations,
-                   glm::vec2 centre);
+    /// Has the vertex shader deform the mesh by DLB instead: by these weights, until the next ones or the
+    /// next mesh, in this pose. Shapes as deform_dlb's. Throws Error where the driver has no buffer that
+    /// large.
+    void set_weights(std::span<const float> weights);
+    void set_pose(std::span<const DualComplex<float>> transformations, glm::vec2 centre);
 
     /// Has draw, where it is asked to, lay a colour over the picture wherever there is some of it, until it
     /// is set empty. vertices: #vertices of the mesh, or none
@@ -85,26 +87,22 @@ class Renderer {
     /// it.
     GLuint display(const View& view, const DisplayColours& colours, double square, bool lines);
 
+    /// Bytes of the mesh that were handed to the driver so far: for tests.
+    std::size_t uploaded() const { return mesh_.uploaded(); }
+
   private:
     void set_view(const GlProgram& program, const View& view, int samples) const;
-    void bind_blend(const GlProgram& program) const;
-    void use_mesh_program(const View& view, int samples, bool with_overlay) const;
+    void use_mesh_program(const View& view, int samples, bool with_overlay);
     void draw_lines(const View& view, glm::vec4 colour);
 
-    GlProgram mesh_program_, mesh_dlb_program_, mesh_overlay_program_, resolve_program_, display_program_,
-        lines_program_, lines_dlb_program_;
-    GlVertexArray mesh_array_, picture_array_, empty_array_;
-    GlBuffer rest_, now_, overlay_, triangles_, edges_, picture_corners_;
-    GlBuffer weights_, transformations_;
-    GlTexture weights_texture_, transformations_texture_;
-    std::optional<glm::vec2> blend_centre_;  ///< set where the vertex shader deforms
-    int probes_ = 0;
+    LazyProgram mesh_program_, mesh_overlay_program_, resolve_program_, display_program_, lines_program_;
+    GlVertexArray picture_array_, empty_array_;
+    GlBuffer picture_corners_;
+    DrawnMesh mesh_;
     bool moved_ = false;
     std::optional<OverlayStyle> overlay_style_;  ///< set where there is an overlay
     PictureTexture picture_;
     Target layer_, integers_, shown_;
-    std::vector<std::uint32_t> triangle_places_;
-    std::size_t edge_count_ = 0;
 };
 
 }  // namespace probewarp

@@ -121,7 +121,8 @@ TEST(VertexShader, DeformsAsTheProcessorDoes) {
         renderer.set_mesh(mesh_of(deformation));
         renderer.set_positions(deformation.now, deformation.moved);
         const Image processor = exported(renderer, document, deformation);
-        renderer.set_blend(weights_of(deformation), deformation.transformations, {128, 128});
+        renderer.set_weights(weights_of(deformation));
+        renderer.set_pose(deformation.transformations, {128, 128});
         const Image shader = exported(renderer, document, deformation);
         // A hundredth of a pixel is 2.6 of the 256 levels that the ramp climbs a pixel; on the border, a
         // pixel may be covered by one of the two only.
@@ -132,6 +133,59 @@ TEST(VertexShader, DeformsAsTheProcessorDoes) {
                     far += std::abs(pixel(processor, x, y)[k] - pixel(shader, x, y)[k]) > 3;
         EXPECT_LE(far, probes == 0 ? 0 : 8) << probes << " probes";
     }
+}
+
+TEST(Upload, IsOfTheVerticesThatMovedAndNothingElse) {
+    const auto context = open_context("osmesa");
+    Document document;
+    document.picture = ramp(64);
+    document.mesh.cells = 8;
+    document.probes.push_back(new_probe(document, {10, 20}));
+    document.probes[0].now += glm::dvec2(5, 3);
+    Deformation deformation;
+    update(deformation, document);
+    Renderer renderer;
+    renderer.set_picture(upload_picture(document.picture->image));
+    renderer.set_mesh(mesh_of(deformation));
+    constexpr std::size_t a_vertex = 2 * sizeof(float);
+    const auto handed_over = [&](std::span<const glm::vec2> now) {
+        const std::size_t before = renderer.uploaded();
+        renderer.set_positions(now, true);
+        return renderer.uploaded() - before;
+    };
+    std::vector<glm::vec2> now = deformation.now;
+    EXPECT_EQ(handed_over(now), now.size() * a_vertex);
+    EXPECT_EQ(handed_over(now), 0u);
+    now[20].x += 1;
+    now[26].y -= 1;
+    EXPECT_EQ(handed_over(now), 7 * a_vertex);
+    EXPECT_EQ(handed_over(now), 0u);
+    now.back().x -= 2;
+    EXPECT_EQ(handed_over(now), a_vertex);
+    now.front().x += 2;
+    EXPECT_EQ(handed_over(now), a_vertex);
+
+    // What is drawn after many small changes is what is drawn by one who sees the last alone.
+    std::mt19937 random(5);
+    for (int step = 0; step < 40; ++step) {
+        const std::size_t first = random() % now.size(), count = random() % (now.size() - first);
+        for (std::size_t v = first; v < first + count; v += 1 + random() % 3) now[v].y += 0.5f;
+        handed_over(now);
+    }
+    Renderer other;
+    other.set_picture(upload_picture(document.picture->image));
+    other.set_mesh(mesh_of(deformation));
+    other.set_positions(now, true);
+    const Image drawn = exported(renderer, document, deformation);
+    EXPECT_EQ(drawn.rgba, exported(other, document, deformation).rgba);
+
+    // Once the shader has moved them nobody knows where they are.
+    renderer.set_weights(weights_of(deformation));
+    const std::size_t before = renderer.uploaded();
+    renderer.set_pose(deformation.transformations, {32, 32});
+    EXPECT_EQ(renderer.uploaded() - before, 4 * sizeof(float));
+    EXPECT_EQ(handed_over(now), now.size() * a_vertex);
+    EXPECT_EQ(exported(renderer, document, deformation).rgba, drawn.rgba);
 }
 
 TEST(Sampling, AWholePixelShiftIsExactAlsoWhereVerticesAreRounded) {

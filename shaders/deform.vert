@@ -1,5 +1,6 @@
 #version 330 core
-// Like mesh.vert, but deforms the mesh itself: the same sum as core/model/deform.cpp, deform_dlb.
+// Moves the vertices, once each, into a buffer that all drawing takes them from: the same sum as
+// core/model/deform.cpp, deform_dlb.
 
 layout(location = 0) in vec2 rest;  // image pixels
 
@@ -8,11 +9,7 @@ uniform samplerBuffer transformations;  // #probes: p0 and p1 of each DCN about 
 uniform int probes;
 uniform vec2 centre;  // image pixels
 
-uniform vec2 origin;
-uniform vec2 scale;
-uniform vec2 size;
-
-out vec2 back;
+out vec2 now;  // image pixels
 
 const float cancelled_share = 1e-6;
 
@@ -34,7 +31,5 @@ void main() {
     vec2 v = rest - centre;
     vec2 turned = s.zw + s.y * vec2(-v.y, v.x);
     vec2 way = 2.0 / dot(s.xy, s.xy) * vec2(dot(s.xy * vec2(1.0, -1.0), turned), dot(s.xy, turned.yx));
-    vec2 now = rest + (probes > 0 ? way : vec2(0.0));
-    back = rest - now;
-    gl_Position = vec4((now - origin) * scale / size * 2.0 - 1.0, 0.0, 1.0);
+    now = rest + (probes > 0 ? way : vec2(0.0));
 }

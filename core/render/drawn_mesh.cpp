@@ -1,0 +1,171 @@
+#include "render/drawn_mesh.h"
+
+#include <fmt/format.h>
+#include <shaders/embedded.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+namespace probewarp {
+
+namespace {
+
+void set_points(const GlBuffer& buffer, GLuint location) {
+    glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
+    glVertexAttribPointer(location, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glEnableVertexAttribArray(location);
+}
+
+/// The vertices from the first that differs to the last.
+VertexRun changed_run(std::span<const glm::vec2> before, std::span<const glm::vec2> after) {
+    const auto first = std::mismatch(before.begin(), before.end(), after.begin()).first - before.begin();
+    const auto same_end = std::mismatch(before.rbegin(), before.rend() - first, after.rbegin()).first;
+    return {std::size_t(first), std::size_t(before.rend() - same_end - first)};
+}
+
+/// Each edge of the triangles once. corners: #triangles x 3
+std::vector<std::array<std::uint32_t, 2>> edges_of(std::span<const std::uint32_t> corners) {
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    edges.reserve(corners.size());
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const std::uint32_t from = corners[i], to = corners[i % 3 == 2 ? i - 2 : i + 1];
+        edges.push_back({std::min(from, to), std::max(from, to)});
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
+}
+
+void bind_texels(const GlProgram& program, const char* name, GLint unit, const GlTexture& texture) {
+    glUniform1i(uniform(program, name), unit);
+    glActiveTexture(GLenum(GL_TEXTURE0 + unit));
+    glBindSampler(GLuint(unit), 0);
+    glBindTexture(GL_TEXTURE_BUFFER, texture.name());
+}
+
+}  // namespace
+
+DrawnMesh::DrawnMesh()
+    : array_(make_vertex_array()),
+      rest_array_(make_vertex_array()),
+      rest_(make_buffer()),
+      now_(make_buffer()),
+      more_(make_buffer()),
+      triangles_(make_buffer()),
+      edges_(make_buffer()),
+      weights_(make_buffer()),
+      transformations_(make_buffer()),
+      weights_texture_(make_texture()),
+      transformations_texture_(make_texture()),
+      mover_([] { return make_feedback_program(shaders::deform_vert, "now"); }) {}
+
+void DrawnMesh::upload(GLenum target, const GlBuffer& buffer, std::span<const std::byte> bytes,
+                       GLenum usage) {
+    glBindBuffer(target, buffer.name());
+    glBufferData(target, GLsizeiptr(bytes.size()), bytes.data(), usage);
+    uploaded_ += bytes.size();
+}
+
+void DrawnMesh::set_mesh(const Mesh& mesh) {
+    vertices_ = mesh.rest.size();
+    upload(GL_ARRAY_BUFFER, rest_, std::as_bytes(std::span(mesh.rest)), GL_STATIC_DRAW);
+    glBindVertexArray(rest_array_.name());
+    set_points(rest_, 0);
+    glBindVertexArray(array_.name());
+    set_points(rest_, 0);
+    set_points(now_, 1);
+    upload(GL_ELEMENT_ARRAY_BUFFER, triangles_, std::as_bytes(std::span(mesh.triangles)), GL_STATIC_DRAW);
+    corners_ = mesh.triangles;
+    edge_count_ = 0;
+    held_.clear();
+    set_positions(mesh.rest);
+}
+
+void DrawnMesh::set_positions(std::span<const glm::vec2> now) {
+    if (now.empty()) return;
+    assert(now.size() == vertices_);
+    const VertexRun run = held_.size() == now.size() ? changed_run(held_, now) : VertexRun{0, now.size()};
+    const auto bytes = std::as_bytes(now.subspan(run.first, run.count));
+    // A part of the buffer has to wait for what is still drawn from it; most of it is better replaced.
+    if (run.count > now.size() / 2) {
+        upload(GL_ARRAY_BUFFER, now_, std::as_bytes(now), GL_STREAM_DRAW);
+    } else if (run.count > 0) {
+        glBindBuffer(GL_ARRAY_BUFFER, now_.name());
+        glBufferSubData(GL_ARRAY_BUFFER, GLintptr(run.first * sizeof(now[0])), GLsizeiptr(bytes.size()),
+                        bytes.data());
+        uploaded_ += bytes.size();
+    }
+    held_.resize(now.size());
+    std::copy_n(now.begin() + std::ptrdiff_t(run.first), run.count,
+                held_.begin() + std::ptrdiff_t(run.first));
+    check_gl("uploading the mesh");
+}
+
+void DrawnMesh::upload_texels(const GlBuffer& buffer, const GlTexture& texture,
+                              std::span<const std::byte> bytes, GLenum format) {
+    upload(GL_TEXTURE_BUFFER, buffer, bytes, GL_STREAM_DRAW);
+    glBindTexture(GL_TEXTURE_BUFFER, texture.name());
+    glTexBuffer(GL_TEXTURE_BUFFER, format, buffer.name());
+}
+
+void DrawnMesh::set_weights(std::span<const float> weights) {
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &largest);
+    if (weights.size() > std::size_t(largest))
+        throw Error(
+            fmt::format("{} weights are more than the {} that this graphics driver's shaders can read",
+                        weights.size(), largest));
+    upload_texels(weights_, weights_texture_, std::as_bytes(weights), GL_R32F);
+    check_gl("uploading the weights");
+}
+
+void DrawnMesh::move(std::span<const DualComplex<float>> transformations, glm::vec2 centre) {
+    static_assert(sizeof(DualComplex<float>) == 4 * sizeof(float));
+    upload_texels(transformations_, transformations_texture_, std::as_bytes(transformations), GL_RGBA32F);
+    const GlProgram& program = mover_.get();
+    glUseProgram(program.name());
+    glUniform1i(uniform(program, "probes"), GLint(transformations.size()));
+    glUniform2f(uniform(program, "centre"), centre.x, centre.y);
+    bind_texels(program, "weights", 1, weights_texture_);
+    bind_texels(program, "transformations", 2, transformations_texture_);
+    glActiveTexture(GL_TEXTURE0);
+    glBindVertexArray(rest_array_.name());
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, now_.name());
+    glEnable(GL_RASTERIZER_DISCARD);
+    glBeginTransformFeedback(GL_POINTS);
+    glDrawArrays(GL_POINTS, 0, GLsizei(vertices_));
+    glEndTransformFeedback();
+    glDisable(GL_RASTERIZER_DISCARD);
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+    held_.clear();
+    check_gl("moving the mesh");
+}
+
+void DrawnMesh::set_attribute(GLuint location, std::span<const std::byte> values, int components) {
+    assert(values.size() == vertices_ * std::size_t(components) * sizeof(float));
+    glBindVertexArray(array_.name());
+    upload(GL_ARRAY_BUFFER, more_, values, GL_STREAM_DRAW);
+    glVertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glEnableVertexAttribArray(location);
+    check_gl("uploading the overlay");
+}
+
+void DrawnMesh::draw() const {
+    glBindVertexArray(array_.name());
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.name());
+    glDrawElements(GL_TRIANGLES, GLsizei(corners_.size()), GL_UNSIGNED_INT, nullptr);
+}
+
+void DrawnMesh::draw_lines() {
+    glBindVertexArray(array_.name());
+    if (edge_count_ == 0) {
+        const auto edges = edges_of(corners_);
+        upload(GL_ELEMENT_ARRAY_BUFFER, edges_, std::as_bytes(std::span(edges)), GL_STATIC_DRAW);
+        edge_count_ = edges.size();
+    }
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, edges_.name());
+    glDrawElements(GL_LINES, GLsizei(edge_count_ * 2), GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace probewarp

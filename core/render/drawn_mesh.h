@@ -1,0 +1,59 @@
+// The deformed mesh as the graphics driver holds it: where its vertices rest and where they are now, whoever
+// moved them. Only what has changed is handed over.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "math/dual_complex.h"
+#include "model/mesh.h"
+#include "render/gl_objects.h"
+
+namespace probewarp {
+
+/// Vertex attributes: 0 is the rest and 1 the place now, both image pixels.
+class DrawnMesh {
+  public:
+    DrawnMesh();
+
+    /// At rest, until it is moved.
+    void set_mesh(const Mesh& mesh);
+
+    /// As the processor moved it. now: #vertices, image pixels. From the first that is elsewhere than the
+    /// last time to the last one, vertices are handed over; none without any.
+    void set_positions(std::span<const glm::vec2> now);
+
+    /// Keeps the weights for `move`, until the next mesh. weights: #vertices x #probes, row-major. Throws
+    /// Error where the driver has no buffer that large.
+    void set_weights(std::span<const float> weights);
+    /// Has the vertex shader move each vertex once, by DLB. transformations: #probes, about `centre`
+    void move(std::span<const DualComplex<float>> transformations, glm::vec2 centre);
+
+    /// One more attribute, of `components` floats a vertex. values: #vertices x components floats
+    void set_attribute(GLuint location, std::span<const std::byte> values, int components);
+
+    /// Where the mesh folds, a later triangle lies over an earlier one.
+    void draw() const;
+    /// Each edge once.
+    void draw_lines();
+
+    /// Bytes that were handed to the driver so far: for tests.
+    std::size_t uploaded() const { return uploaded_; }
+
+  private:
+    void upload(GLenum target, const GlBuffer& buffer, std::span<const std::byte> bytes, GLenum usage);
+    void upload_texels(const GlBuffer& buffer, const GlTexture& texture, std::span<const std::byte> bytes,
+                       GLenum format);
+
+    GlVertexArray array_, rest_array_;  ///< all attributes; the rest alone
+    GlBuffer rest_, now_, more_, triangles_, edges_, weights_, transformations_;
+    GlTexture weights_texture_, transformations_texture_;
+    LazyProgram mover_;
+    std::vector<glm::vec2> held_;  ///< what `now_` holds; empty where that is not known
+    std::vector<std::uint32_t> corners_;
+    std::size_t vertices_ = 0, edge_count_ = 0, uploaded_ = 0;
+};
+
+}  // namespace probewarp
