@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
@@ -111,8 +112,11 @@ void add_render(CLI::App& app, RenderOptions& o) {
     command->add_flag("--iso-lines", o.iso_lines,
                       "A line at every tenth of the weight laid over the picture");
     add_backend(*command, o.backend);
-    command->add_option("--deform", o.deform, "processor or shader: which one moves the vertices")
-        ->check(CLI::IsMember({"processor", "shader"}));
+    command
+        ->add_option("--deform", o.deform,
+                     "auto, processor or shader: which one moves the vertices; auto: the processor, which is "
+                     "the quicker one for a picture that is drawn once")
+        ->check(CLI::IsMember(names(deform_by_names)));
     command->add_flag("--timings", o.timings, "Tell where the time goes, on standard error");
     command->add_flag("--quiet", o.quiet, "Show no progress");
 }
@@ -151,14 +155,18 @@ int failed(int code, const std::string& message) {
 
 void print_failure(const std::string& message) { fmt::print(stderr, "probewarp: {}\n", printable(message)); }
 
-int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path)) {
+int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path, DeformBy deform_by)) {
     CLI::App app("Probewarp deforms a picture with probes.\nWithout a command it opens a window on FILE.",
                  "probewarp");
-    std::string file;
+    std::string file, deform = "auto";
     RenderOptions render_options;
     WeightsOptions weights_options;
     InfoOptions info_options;
     app.add_option("FILE", file, "A picture or a project");
+    app.add_option("--deform", deform,
+                   "auto, processor or shader: which one moves the vertices while the window's probes are "
+                   "dragged; auto: the quicker one, never the shader of a software rasteriser")
+        ->check(CLI::IsMember(names(deform_by_names)));
     app.set_version_flag("--version", "probewarp " PROBEWARP_VERSION);
     app.require_subcommand(0, 1);
     add_render(app, render_options);
@@ -173,7 +181,7 @@ int run_command_line(int argc, char** argv, int (*open_window)(const std::string
         else if (app.got_subcommand("info"))
             info(info_options);
         else
-            return open_window(file);
+            return open_window(file, std::ranges::find(deform_by_names, deform, &DeformByName::name)->by);
         return 0;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);

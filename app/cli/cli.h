@@ -3,10 +3,12 @@
 
 #include <string>
 
+#include "model/deform_by.h"
+
 namespace probewarp {
 
-/// Runs the program. `open_window` is called for `probewarp [FILE]`, with an empty path for none.
-/// Returns the exit code: 0, 1 where something failed, 2 where the arguments are wrong.
-int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path));
+/// Runs the program. `open_window` is called for `probewarp [FILE] [--deform ...]`, with an empty path for
+/// none. Returns the exit code: 0, 1 where something failed, 2 where the arguments are wrong.
+int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path, DeformBy deform_by));
 
 }  // namespace probewarp

@@ -35,7 +35,7 @@ struct RenderOptions : BindingOptions {
     std::string canvas = "image";
     std::string background = "none";
     std::string backend = "auto";
-    std::string deform = "processor";
+    std::string deform = "auto";
     std::string format;  ///< empty: by the output's ending
     std::string heat;    ///< whose weights lie over the picture: a probe, or "all"; empty: nobody's
     std::optional<double> opacity;  ///< of the heat map

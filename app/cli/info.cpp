@@ -1,6 +1,7 @@
 // `probewarp info`: what a picture or a project holds, and what would render it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -10,6 +11,7 @@
 #include "io/project.h"
 #include "model/deformation.h"
 #include "render/context.h"
+#include "render/deform_trial.h"
 
 namespace probewarp {
 
@@ -43,12 +45,31 @@ Json json_of(const WeightSettings& settings) {
             {"most", settings.most}};
 }
 
-std::string renderer_of(const std::string& backend) {
+/// Who would deform in a window that draws as this context does.
+Json deform_choice(const std::string& renderer) {
+    const auto times = measured_deform_times();
+    const DeformChoice choice = choose_deform(DeformBy::automatic, renderer, times);
+    const auto name = std::ranges::find(deform_by_names, choice.by, &DeformByName::by)->name;
+    Json json{{"by", name},
+              {"why", choice.why},
+              {"vertices", DeformTrial::vertices},
+              {"probes", DeformTrial::probes},
+              {"processor_milliseconds", nullptr},
+              {"shader_milliseconds", nullptr}};
+    if (!times) return json;
+    json["processor_milliseconds"] = times->processor;
+    json["shader_milliseconds"] = times->shader;
+    return json;
+}
+
+void add_renderer(Json& json, const std::string& backend) {
     try {
         const auto context = open_context(backend);
-        return renderer_name();
+        json["renderer"] = renderer_name();
+        json["deform"] = deform_choice(renderer_name());
     } catch (const Error& error) {
-        return fmt::format("none: {}", error.what());
+        json["renderer"] = fmt::format("none: {}", error.what());
+        json["deform"] = nullptr;
     }
 }
 
@@ -73,8 +94,8 @@ Json description(const InfoOptions& o) {
               {"blend", document.blend},
               {"cancelled_vertices", deformation.cancelled},
               {"stiffness", document.stiffness && !is_blank(*document.stiffness)},
-              {"probes", std::move(probes)},
-              {"renderer", renderer_of(o.backend)}};
+              {"probes", std::move(probes)}};
+    add_renderer(json, o.backend);
     if (picture.image.resolution)
         json["pixels_per_metre"] = {picture.image.resolution->x, picture.image.resolution->y};
     return json;
@@ -102,6 +123,16 @@ void print_weights(const Json& weights) {
                most > 0 ? fmt::format("{}", most) : "all");
 }
 
+void print_deform(const Json& deform) {
+    if (deform.is_null()) return;
+    fmt::print("deforms by: {}; {}\n", deform["by"].get<std::string>(),
+               printable(deform["why"].get<std::string>()));
+    if (deform["shader_milliseconds"].is_null()) return;
+    fmt::print("a step of a drag, {} vertices by {} probes: processor {:.3f} ms, shader {:.3f} ms\n",
+               deform["vertices"].get<std::size_t>(), deform["probes"].get<int>(),
+               deform["processor_milliseconds"].get<double>(), deform["shader_milliseconds"].get<double>());
+}
+
 void print_text(const Json& json) {
     const auto text = [&json](const char* field) { return printable(json[field].get<std::string>()); };
     fmt::print("{}: {} ({}), {} x {} pixels, {} bits{}\n", text("file"), text("picture"), text("format"),
@@ -121,6 +152,7 @@ void print_text(const Json& json) {
                    p["angle_degrees"].get<double>(), p["radius"].get<double>(),
                    p["painted"].get<bool>() ? ", painted" : "");
     fmt::print("renderer: {}\n", text("renderer"));
+    print_deform(json["deform"]);
 }
 
 }  // namespace

@@ -90,6 +90,15 @@ void show_actual(Editor& editor) { zoom_canvas(editor, editor.canvas_size / 2.0,
 void zoom_in(Editor& editor) { zoom_canvas(editor, editor.canvas_size / 2.0, 1.5); }
 void zoom_out(Editor& editor) { zoom_canvas(editor, editor.canvas_size / 2.0, 1 / 1.5); }
 
+template <DeformBy By>
+void deform_by(Editor& editor) {
+    editor.deform_by = By;
+}
+template <DeformBy By>
+bool deforms_by(const Editor& editor) {
+    return editor.deform_by == By;
+}
+
 constexpr Command all[] = {
     {"File", "New", {'N', true}, nullptr, &ask<Request::new_document>},
     {"File", "Open…", {'O', true}, nullptr, &ask<Request::open>},
@@ -183,6 +192,27 @@ constexpr Command all[] = {
      },
      false,
      [](const Editor& e) { return e.comparison.has_value(); }},
+    {"View",
+     "Deform by whichever is quicker",
+     {},
+     nullptr,
+     &deform_by<DeformBy::automatic>,
+     true,
+     &deforms_by<DeformBy::automatic>},
+    {"View",
+     "Deform by the processor",
+     {},
+     nullptr,
+     &deform_by<DeformBy::processor>,
+     false,
+     &deforms_by<DeformBy::processor>},
+    {"View",
+     "Deform by the graphics card",
+     {},
+     nullptr,
+     &deform_by<DeformBy::shader>,
+     false,
+     &deforms_by<DeformBy::shader>},
     {"View", "Light theme", {}, nullptr, &ask<Request::switch_theme>, true},
     {"Help", "About Probewarp", {}, nullptr, &ask<Request::about>},
 };

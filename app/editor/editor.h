@@ -13,6 +13,7 @@
 
 #include "editor/view.h"
 #include "model/brush.h"
+#include "model/deform_by.h"
 #include "model/deformation.h"
 #include "model/history.h"
 
@@ -117,6 +118,8 @@ struct Editor {
     bool mirror = false;             ///< strokes are painted on both sides of the axis
     std::optional<MirrorAxis> axis;  ///< empty: upright through the picture's middle
     PaintPtr copied_paint;           ///< null: nothing was copied
+
+    DeformBy deform_by = DeformBy::automatic;
 
     /// The window works bindings out beside itself; without one refresh does, at once.
     bool binds_elsewhere = false;

@@ -11,9 +11,11 @@
 
 #include "editor/editor.h"
 #include "gui/binding_job.h"
+#include "gui/deform_choice.h"
 #include "gui/file_dialog.h"
 #include "gui/fonts.h"
 #include "gui/jobs.h"
+#include "gui/last_frame.h"
 #include "gui/messages.h"
 #include "gui/samples.h"
 #include "gui/shown_weights.h"
@@ -33,8 +35,9 @@ struct Shown {
     bool still = false;  ///< the picture stands still under a stroke
     bool bound = false;  ///< with its mesh, rather than as it is while that is being made
     OverlayKey overlay;
-    std::string compared;  ///< the name of the blend at the right of the divider; empty: none
-    int divider = 0;       ///< canvas pixels
+    std::vector<DualComplex<float>> pose;  ///< what the vertex shader blends; empty: the processor deforms
+    std::string compared;                  ///< the name of the blend at the right of the divider; empty: none
+    int divider = 0;                       ///< canvas pixels
     friend bool operator==(const Shown&, const Shown&) = default;
 };
 
@@ -73,11 +76,13 @@ struct App {
     Theme theme = dark_theme();
     Fonts fonts;
     float scale = 1;
-    glm::dvec2 cursor{0};      ///< window pixels: at the last event
-    Shown shown;               ///< as it was last drawn, or tried to be
-    GLuint shown_texture = 0;  ///< 0 before the first time
-    PicturePtr uploaded;       ///< the picture that the renderer holds
+    glm::dvec2 cursor{0};         ///< window pixels: at the last event
+    Shown shown;                  ///< as it was last drawn, or tried to be
+    GLuint shown_texture = 0;     ///< 0 before the first time
+    PicturePtr uploaded;          ///< the picture that the renderer holds
+    WeightsKey overlaid, shaded;  ///< the weights that the renderer's overlay and its shader have
     double deform_milliseconds = 0;
+    DeformMeasurement deform_measurement;
     std::unique_ptr<BindingJob> binding_job;                  ///< null while none is under way
     std::vector<std::unique_ptr<BindingJob>> abandoned_jobs;  ///< given up, and not yet at their end
     std::shared_ptr<const Binding> last_binding;  ///< whatever document it is of: the next one starts from it
@@ -107,6 +112,8 @@ struct App {
     std::string new_name;
     std::string field_label;  ///< of the panel field being edited
     bool quit = false;
+    LastFrame last_frame;
+    bool redraws = true;       ///< the next frame is drawn though the toolkit draws the same
     unsigned long frames = 0;  ///< drawn
     int frames_wanted = 3;     ///< ImGui settles within a few frames of an event
 

@@ -89,6 +89,7 @@ void update_deformation(App& app) {
         start(app, app.last_binding);
         finish(app, 12ms);
     }
+    if (is_shaded(app)) return;
     const auto before = Clock::now();
     const unsigned long version = editor.deformation.version;
     refresh(editor);

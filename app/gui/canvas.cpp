@@ -30,11 +30,26 @@ Shown wanted(const App& app, glm::ivec2 size) {
     // Another picture's mesh is no way to show this one: until its binding is there it is shown as it is.
     wanted.bound = editor.deformation.binding && editor.deformation.source.picture == editor.document.picture;
     if (wanted.bound) wanted.overlay = overlay_key(editor);
+    if (wanted.bound && is_shaded(app)) wanted.pose = shaded_pose(editor.document);
     if (const auto x = divider(editor); x && wanted.bound) {
         wanted.compared = editor.comparison->blend;
         wanted.divider = int(*x);
     }
     return wanted;
+}
+
+/// Has the vertex shader move the vertices; the weights are handed over where it has not got them yet. Where
+/// it cannot, it is the processor's turn from then on.
+void shade(App& app, const WeightsKey& weights) {
+    const Deformation& deformation = app.editor.deformation;
+    try {
+        if (app.shaded != weights) app.renderer->set_weights(weights_of(deformation));
+        app.shaded = weights;
+        app.renderer->set_pose(app.shown.pose, glm::vec2(centre(deformation.source.picture->image)));
+    } catch (const Error&) {
+        app.editor.deform_by = DeformBy::processor;
+        throw;
+    }
 }
 
 /// Draws what `app.shown` says; `before` is what the renderer holds.
@@ -43,17 +58,20 @@ void draw_shown(App& app, const Shown& before) {
     Renderer& renderer = *app.renderer;
     const Shown& now = app.shown;
     const bool new_mesh = before.mesh_version != now.mesh_version;
-    // Where two blends are compared the renderer holds the other one's positions.
+    // Where two blends are compared the renderer holds the other one's positions, where it shaded its own.
     const bool new_positions = before.bound != now.bound || new_mesh || before.version != now.version ||
-                               before.still != now.still || !before.compared.empty();
+                               before.still != now.still || !before.compared.empty() || !before.pose.empty();
+    const WeightsKey weights = weights_key(editor.deformation);
     if (now.bound && new_mesh) renderer.set_mesh(mesh_of(editor.deformation));
     if (!now.bound)
         renderer.set_positions({}, false);
+    else if (!now.pose.empty())
+        shade(app, weights);
     else if (new_positions)
         renderer.set_positions(shown_positions(editor), editor.deformation.moved);
-    if (before.bound != now.bound || new_mesh || before.version != now.version ||
-        !(before.overlay == now.overlay))
+    if (before.bound != now.bound || new_mesh || app.overlaid != weights || before.overlay != now.overlay)
         renderer.set_overlay(overlay_vertices(editor, now.overlay), overlay_style(now.overlay));
+    app.overlaid = weights;
     View view;
     view.scale = glm::dvec2(now.view.zoom);
     view.origin = -now.view.corner / now.view.zoom;
@@ -79,6 +97,7 @@ void update_texture(App& app, glm::ivec2 size) {
     if (app.shown == now) return;
     // Kept before the drawing: where it fails, it is tried again only when something has changed.
     std::swap(app.shown, now);
+    app.redraws = true;
     try {
         draw_shown(app, now);
     } catch (const std::exception& error) {
@@ -88,6 +107,7 @@ void update_texture(App& app, glm::ivec2 size) {
 
 void look_under_pointer(App& app) {
     Editor& editor = app.editor;
+    if (is_shaded(app)) return;  // the same as before: what is dragged stays under the pointer
     app.under.reset();
     app.shares.clear();
     const bool shown =

@@ -184,9 +184,9 @@ std::string facts(const App& app) {
     const Editor& editor = app.editor;
     if (!has_picture(editor)) return app.renderer_label;
     const Image& image = editor.document.picture->image;
-    std::string text =
-        fmt::format("{} × {} · {} vertices · deform {:.2f} ms · {}", image.width, image.height,
-                    grouped(editor.deformation.now.size()), app.deform_milliseconds, app.renderer_label);
+    std::string text = fmt::format("{} × {} · {} vertices · deform {:.2f} ms {} · {}", image.width,
+                                   image.height, grouped(editor.deformation.now.size()),
+                                   app.deform_milliseconds, deform_facts(app), app.renderer_label);
     if (app.binding_job && ImGui::GetTime() - app.binding_job->since > 0.1)
         text = "working out the weights… · " + text;
     if (editor.deformation.cancelled > 0)
@@ -232,9 +232,12 @@ void draw_status_bar(App& app) {
         draw_pixel(app, app.px(76), y, list);
     }
     const std::string text = facts(app);
-    list->AddText({std::round(display.x - app.px(16) - ImGui::CalcTextSize(text.c_str()).x), y},
-                  app.theme.muted, text.c_str());
+    const float left = std::round(display.x - app.px(16) - ImGui::CalcTextSize(text.c_str()).x);
+    list->AddText({left, y}, app.theme.muted, text.c_str());
     ImGui::PopFont();
+    ImGui::SetCursorScreenPos({left, top});
+    ImGui::InvisibleButton("##facts", {display.x - app.px(16) - left, height});
+    if (has_picture(app.editor)) tooltip(deform_explanation(app).c_str());
     ImGui::End();
 }
 

@@ -218,8 +218,12 @@ void on_drop(GLFWwindow* window, int count, const char** paths) {
     if (count > 0 && !app.modal) open_path(app, paths[0]);
 }
 
-void on_damage(GLFWwindow* window) { app_of(window).wake(); }
-void on_size(GLFWwindow* window, int, int) { app_of(window).wake(); }
+void on_damage(GLFWwindow* window) {
+    App& app = app_of(window);
+    app.redraws = true;
+    app.wake();
+}
+void on_size(GLFWwindow* window, int, int) { on_damage(window); }
 
 void use_fonts(App& app, const Fonts& fonts) {
     app.fonts = fonts;
@@ -231,6 +235,7 @@ void rebuild_fonts(App& app) {
     use_fonts(app, load_fonts(app.scale));
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
+    app.redraws = true;
 }
 
 void on_content_scale(GLFWwindow* window, float scale, float) {
@@ -337,6 +342,18 @@ void set_title(App& app) {
     shown = title;
 }
 
+/// Shows what the toolkit has, unless it is on the screen already.
+void show_frame(App& app) {
+    if (!app.last_frame.differs(*ImGui::GetDrawData()) && !app.redraws) return;
+    app.redraws = false;
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(app.window, &width, &height);
+    clear_window(width, height, display_colours(app.theme).canvas);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    glfwSwapBuffers(app.window);
+    ++app.frames;
+}
+
 void draw_frame(App& app) {
     if (!app.fonts.text) rebuild_fonts(app);
     ImGui_ImplOpenGL3_NewFrame();
@@ -370,16 +387,12 @@ void draw_frame(App& app) {
                 app.file_dialog.open || app.export_dialog.open || app.levels_dialog.open || app.about_open ||
                 !app.questions.empty();
     ImGui::Render();
-    int width = 0, height = 0;
-    glfwGetFramebufferSize(app.window, &width, &height);
-    clear_window(width, height, display_colours(app.theme).canvas);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    glfwSwapBuffers(app.window);
+    show_frame(app);
 }
 
 /// Sleeps until there is something to do: idle, the program uses no processor time.
 void wait_for_events(App& app) {
-    if (app.frames_wanted > 0) return glfwPollEvents();
+    if (app.frames_wanted > 0 || wants_trial(app)) return glfwPollEvents();
     const double message = next_message_change(app);
     const double caret = ImGui::GetIO().WantTextInput ? 0.3 : -1;  // a text field's caret blinks
     // While weights are being worked out the status bar tells so; and what was given up is seen to end.
@@ -406,20 +419,23 @@ void run(App& app) {
         handle_requests(app);
         set_title(app);
         draw_frame(app);
-        ++app.frames;
         if (leaves_at_once && (!opens || app.shown.picture)) return;
         release_late_keys(app);
-        --app.frames_wanted;
+        if (app.frames_wanted > 0)
+            --app.frames_wanted;
+        else if (wants_trial(app))
+            advance_trial(app);
     }
 }
 
 }  // namespace
 
-int run_window(const std::string& path) {
+int run_window(const std::string& path, DeformBy deform_by) {
     const Glfw glfw;
     App app;
     app.scale = wanted_scale(glfwGetPrimaryMonitor());
     app.editor.binds_elsewhere = true;
+    app.editor.deform_by = deform_by;
     // The driver takes most of the time until the first frame: fonts and file are read meanwhile.
     Toolkit toolkit(app.scale);
     if (!path.empty()) open_path(app, path);

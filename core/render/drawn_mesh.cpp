@@ -151,10 +151,10 @@ void DrawnMesh::set_attribute(GLuint location, std::span<const std::byte> values
     check_gl("uploading the overlay");
 }
 
-void DrawnMesh::draw() const {
+void DrawnMesh::draw(std::size_t triangles) const {
     glBindVertexArray(array_.name());
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.name());
-    glDrawElements(GL_TRIANGLES, GLsizei(corners_.size()), GL_UNSIGNED_INT, nullptr);
+    glDrawElements(GL_TRIANGLES, GLsizei(3 * triangles), GL_UNSIGNED_INT, nullptr);
 }
 
 void DrawnMesh::draw_lines() {

@@ -34,6 +34,15 @@ def shades(width, height, seed, holes=False):
     return samples
 
 
+class Info(unittest.TestCase):
+    def test_it_tells_who_deforms_and_both_times(self):
+        output = subprocess.run([PROGRAM, "info", OCTOPUS, "--backend", "osmesa"], capture_output=True, text=True,
+                                check=True, timeout=120).stdout
+        self.assertIn("deforms by: processor; llvmpipe draws in software\n", output)
+        times = re.search(r"10201 vertices by 8 probes: processor ([\d.]+) ms, shader ([\d.]+) ms\n", output)
+        self.assertTrue(all(float(time) > 0 for time in times.groups()), output)
+
+
 class Render(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="probewarp-render-")

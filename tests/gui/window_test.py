@@ -17,6 +17,9 @@ import time
 import unittest
 import zipfile
 
+from Xlib.display import Display
+from Xlib.ext import damage
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
 from png_file import read_png, write_png
 
@@ -123,6 +126,24 @@ class Desk:
         header = struct.unpack(">25I", data[:100])
         start, length, pixel = header[0] + 12 * header[19], header[12], header[11] // 8
         return [data[start + y * length + left * pixel:start + y * length + right * pixel] for y in range(top, bottom)]
+
+
+class Drawings:
+    """Counts what is drawn into a window, as the X server sees it."""
+
+    def __init__(self, desk):
+        self.display = Display(desk.environment["DISPLAY"])
+        self.display.damage_query_version()
+        self.display.create_resource_object("window", int(desk.window)).damage_create(damage.DamageReportRawRectangles)
+        self.display.sync()
+
+    def count(self):
+        """Since the last time."""
+        self.display.sync()
+        found = 0
+        while self.display.pending_events():
+            found += self.display.next_event().type == self.display.extension_event.DamageNotify
+        return found
 
 
 def project_of(path):
@@ -348,13 +369,70 @@ class WindowTest(unittest.TestCase):
         time.sleep(3)
         self.assertLessEqual(ticks() - before, 1)  # a tick is 10 ms; one may fall in by the clock's grain
 
+    def test_nothing_is_drawn_where_nothing_changes(self):
+        desk = self.open_sample()
+        desk.double_click(*desk.at(512, 694))
+        desk.ask("mousemove", 1100, 740)  # an empty part of the panel
+        time.sleep(1)
+        drawings = Drawings(desk)
+        drawings.count()  # the first is of what was there
+
+        def switches():
+            """How often any of the program's threads went to sleep: one that is never woken draws nothing."""
+            return sum(int(line.split()[1]) for status in pathlib.Path(f"/proc/{desk.program.pid}/task").glob("*/status")
+                       for line in status.read_text().splitlines() if line.startswith("voluntary_ctxt_switches"))
+
+        before = switches()
+        time.sleep(2)
+        self.assertEqual(switches(), before)
+        self.assertEqual(drawings.count(), 0)
+        # Events that change nothing.
+        desk.key("F9")
+        desk.ask("mousemove", 1110, 745)
+        desk.settle()
+        self.assertGreater(switches(), before)
+        self.assertEqual(drawings.count(), 0)
+        # Over the canvas the status bar tells where the pointer is.
+        desk.ask("mousemove", *desk.at(512, 300))
+        desk.settle()
+        self.assertGreater(drawings.count(), 0)
+
+    def test_the_vertex_shader_drags_as_the_processor_does(self):
+        x, y = 240, 100
+        drags, projects = [], []
+        for deform in ("processor", "shader"):
+            desk = self.open_ramp("60,100", f"{x},{y}:{x + 6},{y + 4}", "150,30", more=["--deform", deform])
+            everything = *desk.at(-60, -60), *desk.at(360, 260)
+            path = [desk.at(x + 6 + k * 5, y + 4 - k * 4) for k in range(9)]
+            desk.drag(path[:1], release=False)  # chosen, and the pointer is there
+            desk.ask("mouseup", "1")
+            desk.settle()
+            still = desk.seen(*everything)
+            desk.drag(path, release=False)
+            drags.append(desk.seen(*everything))
+            self.assertNotEqual(drags[-1], still)
+            desk.key("Escape")
+            desk.ask("mouseup", "1", "mousemove", *path[0])
+            desk.settle()
+            self.assertEqual(desk.seen(*everything), still)
+            desk.drag(path)
+            projects.append(self.save(desk, "dragged.probewarp"))
+            exported = self.export(desk, "dragged.png")
+            self.assertEqual(exported.read_bytes(), self.render(projects[-1], desk.home / "same.png"))
+            desk.close()
+        self.assertEqual(*(project_of(project)["probes"] for project in projects))
+        # Shades of 8 bits rise by one a pixel or less, and both are within a hundredth of a pixel; an edge may take
+        # in a pixel more.
+        far = sum(abs(a - b) > 1 for rows in zip(*drags) for a, b in zip(*rows))
+        self.assertLess(far, 50)
+
     # A picture that says of each pixel where it was: red is x and green y, in 65535ths of the side.
     RAMP = 300, 200
     BRUSH = 300 / 16  # image pixels: the radius that the brush has on it at first
     PATH = (150, 80), (150, 120)
     WAY = 20, 12  # how far the second probe is moved
 
-    def open_ramp(self, *probes):
+    def open_ramp(self, *probes, more=()):
         """A project with the ramp, shown at its own size."""
         scratch = pathlib.Path(options.scratch)
         scratch.mkdir(parents=True, exist_ok=True)
@@ -364,7 +442,7 @@ class WindowTest(unittest.TestCase):
         picture = write_png(scratch / "ramp.png", width, height, samples, 16, 2)
         words = [word for probe in probes for word in ("--probe", probe)]
         subprocess.run([options.program, "render", picture, *words, "-o", scratch / "ramp.probewarp"], check=True)
-        desk = self.desk(scratch / "ramp.probewarp")
+        desk = self.desk(scratch / "ramp.probewarp", *more)
         desk.wait_title("ramp.probewarp – Probewarp")
         desk.settle()
         desk.corner = 48 + round((1280 - 48 - 308 - width) / 2), 32 + round((800 - 32 - 26 - height) / 2)

@@ -12,6 +12,7 @@
 
 #include "model/deformation.h"
 #include "render/context.h"
+#include "render/deform_trial.h"
 #include "render/export.h"
 
 namespace probewarp {
@@ -92,6 +93,13 @@ Image exported(Renderer& renderer, const Document& document, const Deformation& 
     return job.take();
 }
 
+/// A renderer that holds a document's picture and its deformed mesh.
+void prepare(Renderer& renderer, const Document& document, const Deformation& deformation) {
+    renderer.set_picture(upload_picture(document.picture->image));
+    renderer.set_mesh(mesh_of(deformation));
+    renderer.set_positions(deformation.now, deformation.moved);
+}
+
 TEST(VertexShader, DeformsAsTheProcessorDoes) {
     constexpr unsigned seed = 20261122;
     std::printf("seed %u\n", seed);
@@ -133,6 +141,40 @@ TEST(VertexShader, DeformsAsTheProcessorDoes) {
                     far += std::abs(pixel(processor, x, y)[k] - pixel(shader, x, y)[k]) > 3;
         EXPECT_LE(far, probes == 0 ? 0 : 8) << probes << " probes";
     }
+}
+
+TEST(DeformChoice, IsAskedForOrTheQuickerOneAndNeverTheShaderOfASoftwareRasteriser) {
+    const auto by = [](DeformBy wanted, const char* renderer, std::optional<DeformTimes> times) {
+        return choose_deform(wanted, renderer, times).by;
+    };
+    constexpr DeformTimes shader_wins{2, 1}, processor_wins{1, 2};
+    EXPECT_EQ(by(DeformBy::automatic, "NVIDIA H200", shader_wins), DeformBy::shader);
+    EXPECT_EQ(by(DeformBy::automatic, "NVIDIA H200", processor_wins), DeformBy::processor);
+    EXPECT_EQ(by(DeformBy::automatic, "NVIDIA H200", {}), DeformBy::processor);
+    for (const char* software : {"llvmpipe", "softpipe", "SwiftShader Device", "Software Rasterizer"})
+        EXPECT_EQ(by(DeformBy::automatic, software, shader_wins), DeformBy::processor) << software;
+    EXPECT_EQ(by(DeformBy::shader, "llvmpipe", processor_wins), DeformBy::shader);
+    EXPECT_EQ(by(DeformBy::processor, "NVIDIA H200", shader_wins), DeformBy::processor);
+    EXPECT_EQ(choose_deform(DeformBy::automatic, "llvmpipe", {}).why, "llvmpipe draws in software");
+}
+
+TEST(DeformTrial, MeasuresBothAndLeavesTheRenderersMeshAlone) {
+    const auto context = open_context("osmesa");
+    Document document;
+    document.picture = ramp(64);
+    document.probes.push_back(new_probe(document, {10, 20}));
+    document.probes[0].now += glm::dvec2(5, 3);
+    Deformation deformation;
+    update(deformation, document);
+    Renderer renderer;
+    prepare(renderer, document, deformation);
+    const Image before = exported(renderer, document, deformation);
+    const auto times = measured_deform_times();
+    ASSERT_TRUE(times);
+    EXPECT_GT(times->processor, 0);
+    EXPECT_GT(times->shader, 0);
+    EXPECT_LT(std::max(times->processor, times->shader), 1000);  // milliseconds, not seconds or less
+    EXPECT_EQ(exported(renderer, document, deformation).rgba, before.rgba);
 }
 
 TEST(Upload, IsOfTheVerticesThatMovedAndNothingElse) {
@@ -234,13 +276,6 @@ PicturePtr ring(int side) {
         }
     picture.image.rgba = std::move(rgba);
     return std::make_shared<const Picture>(std::move(picture));
-}
-
-/// A renderer that holds a document's picture and its deformed mesh.
-void prepare(Renderer& renderer, const Document& document, const Deformation& deformation) {
-    renderer.set_picture(upload_picture(document.picture->image));
-    renderer.set_mesh(mesh_of(deformation));
-    renderer.set_positions(deformation.now, deformation.moved);
 }
 
 TEST(Outline, CellsThatAreLeftOutChangeNoUndeformedByte) {

@@ -1,0 +1,50 @@
+// Who deforms in the window: measured once, when nothing else is to be done; and the vertex shader's turn.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/deformation.h"
+#include "render/deform_trial.h"
+
+namespace probewarp {
+
+struct App;
+
+/// The measurement as far as it is.
+struct DeformMeasurement {
+    std::unique_ptr<DeformTrial> trial;  ///< while it is under way
+    std::optional<DeformTimes> times;
+    bool over = false;
+};
+
+/// Whether it is time to go on measuring: a picture is shown, and nothing moves.
+bool wants_trial(const App& app);
+/// Takes one step of the trial.
+void advance_trial(App& app);
+
+DeformChoice deform_choice(const App& app);
+
+/// Whether the vertex shader moves the vertices now. It does so only while a probe is dragged: at rest the
+/// processor has them, which the pointer, the brush and the export ask for.
+bool is_shaded(const App& app);
+
+/// #probes: what the shader blends, about the picture's centre.
+std::vector<DualComplex<float>> shaded_pose(const Document& document);
+
+/// "by processor (0.06 ms; shader 3.12 ms)"
+std::string deform_facts(const App& app);
+/// What these times are, in a few sentences.
+std::string deform_explanation(const App& app);
+
+/// What the weights follow from: who keeps this need not look at the weights themselves.
+struct WeightsKey {
+    std::shared_ptr<const Binding> binding;
+    Document at_rest;  ///< what the deformation is of, with every probe at rest
+    friend bool operator==(const WeightsKey&, const WeightsKey&) = default;
+};
+WeightsKey weights_key(const Deformation& deformation);
+
+}  // namespace probewarp
