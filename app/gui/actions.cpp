@@ -224,9 +224,8 @@ void export_to(App& app, const fs::path& path) {
         return;
     }
     const ExportSettings& settings = app.export_dialog.settings;
-    EncodeOptions encode;
+    EncodeOptions encode = app.export_dialog.encode;
     encode.background = settings.background.value_or(encode.background);
-    encode.quality = app.export_dialog.quality;
     try {
         // Where two blends are compared the renderer holds the other one's.
         app.renderer->set_positions(app.editor.deformation.now, app.editor.deformation.moved);

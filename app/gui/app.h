@@ -20,6 +20,7 @@
 #include "gui/samples.h"
 #include "gui/shown_weights.h"
 #include "gui/theme.h"
+#include "io/image_file.h"
 #include "render/export.h"
 #include "render/renderer.h"
 
@@ -47,7 +48,7 @@ struct ExportDialog {
     ExportSettings settings;
     bool transparent = true;
     float background[3] = {1, 1, 1};
-    int quality = 95;
+    EncodeOptions encode;  ///< the quality of JPEG, the compression of PNG
     std::string path;
     bool overwrite_asked = false;  ///< the path exists and the person was told so
 };

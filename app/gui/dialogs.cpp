@@ -69,6 +69,33 @@ void begin_export(App& app) {
     export_to(app, export_path(app));
 }
 
+/// What the format of the file has to choose from.
+void draw_format_settings(App& app, float width) {
+    ExportDialog& dialog = app.export_dialog;
+    const ImageFormat* format = image_format_of(export_path(app));
+    if (format && format->name == "png") {
+        const auto names = compressions();
+        const auto chosen =
+            std::ranges::find(names, dialog.encode.compression, &CompressionName::compression);
+        row_label(app, "Compression", 92);
+        if (begin_combo(app, "##compression", std::string(chosen->label).c_str(), width)) {
+            for (const CompressionName& name : names)
+                if (ImGui::Selectable(std::string(name.label).c_str(),
+                                      name.compression == dialog.encode.compression))
+                    dialog.encode.compression = name.compression;
+            ImGui::EndCombo();
+        }
+        tooltip("The pixels are the same: written soon, or a small file");
+    }
+    if (format && format->name == "jpeg") {
+        row_label(app, "Quality", 92);
+        ImGui::SetNextItemWidth(width);
+        ImGui::SliderInt("##quality", &dialog.encode.quality, 1, 100);
+        row_label(app, "", 92);
+        ImGui::TextDisabled(dialog.transparent ? "JPEG has no transparency: white is put behind." : "");
+    }
+}
+
 void draw_export_settings(App& app) {
     ExportDialog& dialog = app.export_dialog;
     const float width = ImGui::GetContentRegionAvail().x - app.px(92);
@@ -108,14 +135,7 @@ void draw_export_settings(App& app) {
         dialog.settings.background =
             Colour{byte(dialog.background[0]), byte(dialog.background[1]), byte(dialog.background[2])};
 
-    const ImageFormat* format = image_format_of(dialog.path);
-    if (format && format->name == "jpeg") {
-        row_label(app, "Quality", 92);
-        ImGui::SetNextItemWidth(width);
-        ImGui::SliderInt("##quality", &dialog.quality, 1, 100);
-        row_label(app, "", 92);
-        ImGui::TextDisabled(dialog.transparent ? "JPEG has no transparency: white is put behind." : "");
-    }
+    draw_format_settings(app, width);
 }
 
 }  // namespace

@@ -573,6 +573,21 @@ class WindowTest(unittest.TestCase):
         desk.key("ctrl+z")
         self.assertEqual(self.export(desk, "undone.png").read_bytes(), as_it_was)
 
+    def test_compressions_are_the_command_lines(self):
+        octopus = f"{options.images}/octopus.probewarp"
+        desk = self.desk(octopus)
+        desk.wait_title("octopus.png – Probewarp")
+        desk.settle()
+        desk.key("ctrl+e")
+        for place in ((686, 457), (510, 534), (640, 297)):  # the list, its third row, and back to the path
+            desk.ask("mousemove", *place, "sleep", "0.2", "click", "1")
+            desk.settle()
+        path = desk.home / "small.png"
+        desk.type_path(path)
+        desk.wait(path.exists, "the export small.png")
+        self.assertEqual(path.read_bytes(), self.render(octopus, desk.home / "same.png", "--compression", "small"))
+        self.assertNotEqual(path.read_bytes(), self.render(octopus, desk.home / "default.png"))
+
     def test_scale_two(self):
         desk = self.open_sample(scale=2)
         desk.double_click(*desk.at(512, 694))
