@@ -4,6 +4,7 @@
 // than what a slower library would.
 #include "io/deflate_strip.h"
 
+#include <isa-l/igzip_lib.h>
 #include <libdeflate.h>
 #include <zlib.h>
 
@@ -76,6 +77,28 @@ void open_end(std::vector<std::byte>& deflated, std::size_t raw_bytes) {
     if (last.end % 8 != 0) deflated[last.end / 8] &= ~(std::byte{0xFF} << (last.end % 8));
     deflated.resize((last.end + 3 + 7) / 8);
     for (const unsigned byte : {0x00u, 0x00u, 0xFFu, 0xFFu}) deflated.push_back(std::byte(byte));
+}
+
+std::vector<std::byte> deflate_quickly(Bytes raw, bool whole) {
+    // Level 2: 3 is no smaller but on photographs, by a hundredth, and much larger on drawings.
+    const auto buffer = std::make_unique_for_overwrite<std::uint8_t[]>(ISAL_DEF_LVL2_DEFAULT);
+    isal_zstream stream;
+    isal_deflate_init(&stream);
+    stream.level = 2;
+    stream.level_buf = buffer.get();
+    stream.level_buf_size = ISAL_DEF_LVL2_DEFAULT;
+    // The empty block of a flush ends on a byte.
+    stream.flush = whole ? NO_FLUSH : SYNC_FLUSH;
+    stream.end_of_stream = whole ? 1 : 0;
+    stream.next_in = const_cast<std::uint8_t*>(reinterpret_cast<const std::uint8_t*>(raw.data()));
+    stream.avail_in = std::uint32_t(raw.size());
+    std::vector<std::byte> out(raw.size() + raw.size() / 16 + 512);
+    stream.next_out = reinterpret_cast<std::uint8_t*>(out.data());
+    stream.avail_out = std::uint32_t(out.size());
+    if (isal_deflate(&stream) != COMP_OK || stream.avail_in > 0 || stream.avail_out == 0)
+        throw Error("cannot be written as PNG: ISA-L cannot deflate it");
+    out.resize(stream.total_out);
+    return out;
 }
 
 }  // namespace probewarp

@@ -24,8 +24,8 @@ namespace {
 /// How hard a compression tries. The levels are libdeflate's.
 struct Effort {
     std::array<FilterSet, 3>
-        filters;  ///< each in turn for the whole strip, the smallest kept; 0: none further
-    int level;
+        filters;                   ///< each in turn for the whole strip, the smallest kept; 0: none further
+    int level;                     ///< 0: ISA-L
     int drawing_level;             ///< where the strip packs to a sixth or less, as photographs never do
     std::size_t strip_bytes;       ///< about
     std::array<unsigned, 2> zlib;  ///< the stream's two first bytes, which hint at the level
@@ -39,7 +39,7 @@ constexpr Effort effort_of(Compression compression) {
     constexpr std::size_t mebibyte = std::size_t{1} << 20;
     switch (compression) {
         case Compression::fast:
-            return {{sub_or_up}, 1, 1, mebibyte, {0x78, 0x01}};
+            return {{all_filters}, 0, 1, mebibyte, {0x78, 0x01}};
         case Compression::small:
             return {{all_filters, no_filter, up_filter}, 12, 12, 4 * mebibyte, {0x78, 0xDA}};
         default:
@@ -73,7 +73,11 @@ void pack_row(const Sample* from, const Rows& rows, std::uint8_t* to) {
 void pack_row(const Rows& rows, int y, std::uint8_t* to) {
     const std::size_t samples =
         std::size_t(y) * std::size_t(rows.samples.width) * std::size_t(rows.samples.channels);
-    if (rows.samples.bits == 16)
+    if (rows.samples.bits == 8 && rows.samples.channels == 4 && rows.kept == 3)
+        drop_alpha({reinterpret_cast<const std::uint8_t*>(rows.samples.first) + samples,
+                    std::size_t(rows.samples.width) * 4},
+                   {to, rows.row_bytes()});
+    else if (rows.samples.bits == 16)
         pack_row(reinterpret_cast<const std::uint16_t*>(rows.samples.first) + samples, rows, to);
     else
         pack_row(reinterpret_cast<const std::uint8_t*>(rows.samples.first) + samples, rows, to);
@@ -82,12 +86,12 @@ void pack_row(const Rows& rows, int y, std::uint8_t* to) {
 std::vector<std::uint8_t> filtered(const Rows& rows, FilterSet filters) {
     const std::size_t bytes = rows.row_bytes();
     std::vector<std::uint8_t> out(std::size_t(rows.end - rows.first) * (bytes + 1));
-    std::vector<std::uint8_t> row(bytes), above(bytes), scratch;
+    std::vector<std::uint8_t> row(bytes), above(bytes);
     if (rows.first > 0) pack_row(rows, rows.first - 1, above.data());
     for (int y = rows.first; y < rows.end; ++y) {
         pack_row(rows, y, row.data());
         const auto to = std::span(out).subspan(std::size_t(y - rows.first) * (bytes + 1), bytes + 1);
-        filter_row(row, above, rows.pixel_bytes(), filters, to, scratch);
+        filter_row(row, above, rows.pixel_bytes(), filters, to);
         std::swap(row, above);
     }
     return out;
@@ -109,13 +113,19 @@ std::vector<std::uint8_t> best_filtered(const Rows& rows, const Effort& effort) 
     return best;
 }
 
+std::vector<std::byte> deflated_strip(Bytes raw, const Effort& effort, bool last) {
+    std::vector<std::byte> out =
+        effort.level == 0 ? deflate_quickly(raw, last) : deflate_whole(raw, effort.level);
+    const bool again = effort.drawing_level > effort.level && out.size() <= raw.size() / 6;
+    if (again) out = deflate_whole(raw, effort.drawing_level);
+    if ((again || effort.level > 0) && !last) open_end(out, raw.size());
+    return out;
+}
+
 PngStrip strip_of(const Rows& rows, const Effort& effort) {
     const std::vector<std::uint8_t> raw = best_filtered(rows, effort);
     const Bytes bytes = std::as_bytes(std::span(raw));
-    std::vector<std::byte> deflated = deflate_whole(bytes, effort.level);
-    if (effort.drawing_level > effort.level && deflated.size() <= raw.size() / 6)
-        deflated = deflate_whole(bytes, effort.drawing_level);
-    if (rows.end < rows.samples.height) open_end(deflated, raw.size());
+    std::vector<std::byte> deflated = deflated_strip(bytes, effort, rows.end == rows.samples.height);
     if (rows.first == 0)
         deflated.insert(deflated.begin(), {std::byte(effort.zlib[0]), std::byte(effort.zlib[1])});
     PngStrip strip;

@@ -1,6 +1,7 @@
 // PNG out: every size, depth and compression comes back byte for byte, through strips and whole, and what is
 // made does not depend on how rows come.
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 #include <libdeflate.h>
 #include <zlib.h>
 
@@ -193,27 +194,43 @@ std::vector<std::uint8_t> unfiltered(const std::vector<std::uint8_t>& filtered,
     return row;
 }
 
-TEST(PngFilter, EachFilterIsTheSpecifications) {
+/// Runs `check` with each instruction set in turn.
+template <class Check>
+void with_every_target(const Check& check) {
+    for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+        SCOPED_TRACE(hwy::TargetName(target));
+        hwy::SetSupportedTargetsForTest(target);
+        check();
+        hwy::SetSupportedTargetsForTest(0);
+    }
+}
+
+void expect_each_filter_is_the_specifications() {
     std::mt19937 random(seed);
-    std::vector<std::uint8_t> scratch;
     for (const std::size_t step : {1u, 2u, 3u, 4u, 6u, 8u})
         for (std::size_t pixels = 1; pixels < 40; ++pixels) {
             std::vector<std::uint8_t> row(pixels * step), above(row.size());
-            for (auto& v : row) v = std::uint8_t(random());
-            for (auto& v : above) v = std::uint8_t(random());
+            // Few values, so that Paeth's distances are often equal, and all of them by turns.
+            const unsigned values = pixels % 2 == 0 ? 4 : 256;
+            for (auto& v : row) v = std::uint8_t(random() % values * (255 / (values - 1)));
+            for (auto& v : above) v = std::uint8_t(random() % values * (255 / (values - 1)));
             for (unsigned type = 0; type < 5; ++type) {
                 std::vector<std::uint8_t> out(row.size() + 1);
-                filter_row(row, above, step, 1u << type, out, scratch);
+                filter_row(row, above, step, 1u << type, out);
                 ASSERT_EQ(out[0], type);
                 ASSERT_EQ(unfiltered(out, above, step), row);
             }
         }
 }
 
-TEST(PngFilter, TheLeastSumIsChosen) {
-    std::vector<std::uint8_t> scratch, out(601), row(600), above(600);
+TEST(PngFilter, EachFilterIsTheSpecifications) {
+    with_every_target(expect_each_filter_is_the_specifications);
+}
+
+void expect_that_the_least_sum_is_chosen() {
+    std::vector<std::uint8_t> out(601), row(600), above(600);
     const auto chosen = [&](FilterSet filters) {
-        filter_row(row, above, 3, filters, out, scratch);
+        filter_row(row, above, 3, filters, out);
         EXPECT_EQ(unfiltered(out, above, 3), row);
         return int(out[0]);
     };
@@ -239,6 +256,45 @@ TEST(PngFilter, TheLeastSumIsChosen) {
     // 513 magnitudes of 128 are 65664, more than 16 bits hold, and more than the 384 of the first pixel.
     row.assign(513, 128), above.assign(513, 0), out.assign(514, 0);
     EXPECT_EQ(chosen(sub_or_up), 1);
+}
+
+TEST(PngFilter, TheLeastSumIsChosen) { with_every_target(expect_that_the_least_sum_is_chosen); }
+
+TEST(PngFilter, TheChoiceIsTheSameWithEveryInstructionSet) {
+    std::mt19937 random(seed);
+    for (std::size_t bytes = 3; bytes < 400; bytes += 3) {
+        // So that all five do about equally well, and one sum that lacks a byte changes the choice.
+        std::vector<std::uint8_t> row(bytes), above(bytes);
+        for (std::size_t i = 0; i < bytes; ++i)
+            row[i] = std::uint8_t(random()), above[i] = std::uint8_t(random());
+        std::array<std::uint64_t, 5> sums{};
+        for (unsigned type = 0; type < 5; ++type) {
+            std::vector<std::uint8_t> out(bytes + 1);
+            filter_row(row, above, 3, 1u << type, out);
+            for (std::size_t i = 1; i < out.size(); ++i)
+                sums[type] += std::uint64_t(std::abs(std::int8_t(out[i])));
+        }
+        const auto least = std::ranges::min_element(sums) - sums.begin();
+        with_every_target([&] {
+            std::vector<std::uint8_t> out(bytes + 1);
+            filter_row(row, above, 3, all_filters, out);
+            EXPECT_EQ(out[0], least) << bytes;
+        });
+    }
+}
+
+TEST(PngFilter, TheAlphaIsDroppedFromEveryPixel) {
+    with_every_target([] {
+        for (std::size_t pixels = 1; pixels < 200; ++pixels) {
+            std::vector<std::uint8_t> rgba(pixels * 4), rgb(pixels * 3), expected;
+            for (std::size_t i = 0; i < rgba.size(); ++i) {
+                rgba[i] = std::uint8_t(i * 7);
+                if (i % 4 != 3) expected.push_back(rgba[i]);
+            }
+            drop_alpha(rgba, rgb);
+            ASSERT_EQ(rgb, expected) << pixels;
+        }
+    });
 }
 
 // ---- strips ----
@@ -284,6 +340,23 @@ TEST(DeflateStrip, StripsMakeOneStream) {
             ASSERT_EQ(inflated(stream, all.size()), all) << "level " << level << ", run " << run;
         }
     for (const int count : ends) EXPECT_GT(count, 0);
+}
+
+TEST(DeflateStrip, QuickStripsMakeOneStreamWithTheOthers) {
+    std::mt19937 random(seed);
+    for (int run = 0; run < 200; ++run) {
+        std::vector<std::byte> stream, all;
+        for (int i = 0; i < 4; ++i) {
+            const unsigned values = std::array{1u, 2u, 17u, 256u}[random() % 4];
+            const auto raw = strip_bytes(random, 1 + random() % (run % 10 == 0 ? 2000000 : 3000), values);
+            const bool last = i == 3, quickly = random() % 4 != 0;
+            auto strip = quickly ? deflate_quickly(raw, last) : deflate_whole(raw, 1);
+            if (!quickly && !last) open_end(strip, raw.size());
+            stream.insert(stream.end(), strip.begin(), strip.end());
+            all.insert(all.end(), raw.begin(), raw.end());
+        }
+        ASSERT_EQ(inflated(stream, all.size()), all) << "run " << run;
+    }
 }
 
 }  // namespace
