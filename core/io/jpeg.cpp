@@ -295,8 +295,8 @@ void set_density(jpeg_compress_struct& jpeg, const Resolution& resolution) {
 void set_parameters(jpeg_compress_struct& jpeg, const Image& image, int quality) {
     jpeg.image_width = JDIMENSION(image.width);
     jpeg.image_height = JDIMENSION(image.height);
-    jpeg.input_components = 3;
-    jpeg.in_color_space = JCS_RGB;
+    jpeg.input_components = 4;
+    jpeg.in_color_space = JCS_EXT_RGBX;
     jpeg_set_defaults(&jpeg);
     jpeg_set_quality(&jpeg, std::clamp(quality, 1, 100), TRUE);
     // Colours at full size (4:4:4): a deformed picture is worked on further, and edges of colour must not
@@ -306,28 +306,49 @@ void set_parameters(jpeg_compress_struct& jpeg, const Image& image, int quality)
     if (image.resolution) set_density(jpeg, *image.resolution);
 }
 
-/// One row over the background, as 8-bit RGB. Exact: one division, rounded to the nearest.
+/// One row over the background, as 8-bit RGB and a byte of no meaning. Exact: one division, rounded to the
+/// nearest. rgba, rgbx: width x 4
 template <class Sample>
-void flatten(const Sample* rgba, std::span<std::uint8_t> rgb, Colour background) {
+void flatten(const Sample* rgba, std::span<std::uint8_t> rgbx, Colour background) {
     constexpr std::uint64_t full = std::numeric_limits<Sample>::max();
     constexpr std::uint64_t scale = full / 255;  // of a sample against an 8-bit one
     const std::array<std::uint64_t, 3> under{background.r * scale, background.g * scale,
                                              background.b * scale};
-    for (std::size_t i = 0; i < rgb.size(); rgba += 4)
-        for (std::size_t c = 0; c < 3; ++c, ++i)
-            rgb[i] = std::uint8_t(
-                (rgba[c] * std::uint64_t(rgba[3]) + under[c] * (full - rgba[3]) + full * scale / 2) /
-                (full * scale));
+    for (std::size_t i = 0; i < rgbx.size(); i += 4)
+        for (std::size_t c = 0; c < 3; ++c)
+            rgbx[i + c] = std::uint8_t((rgba[i + c] * std::uint64_t(rgba[i + 3]) +
+                                        under[c] * (full - rgba[i + 3]) + full * scale / 2) /
+                                       (full * scale));
+}
+
+bool is_opaque(std::span<const std::uint8_t> rgba) {
+    std::uint8_t all = 255;
+    for (std::size_t i = 3; i < rgba.size(); i += 4) all &= rgba[i];
+    return all == 255;
+}
+
+/// The row as libjpeg takes it: an opaque one of 8 bits as it is, others flattened in `room`. Both: width x 4
+const std::uint8_t* rgbx_row(std::span<const std::uint8_t> rgba, std::span<std::uint8_t> room,
+                             Colour background) {
+    if (is_opaque(rgba)) return rgba.data();
+    flatten(rgba.data(), room, background);
+    return room.data();
+}
+
+const std::uint8_t* rgbx_row(std::span<const std::uint16_t> rgba, std::span<std::uint8_t> room,
+                             Colour background) {
+    flatten(rgba.data(), room, background);
+    return room.data();
 }
 
 template <class Sample>
 void write_rows(Encoder& encoder, const Image& image, const std::vector<Sample>& rgba, Colour background) {
-    const std::size_t width = std::size_t(image.width);
-    std::vector<std::uint8_t> row(width * 3);
+    const std::size_t row_samples = std::size_t(image.width) * 4;
+    std::vector<std::uint8_t> room(row_samples);
     for (int y = 0; y < image.height; ++y) {
-        flatten(rgba.data() + std::size_t(y) * width * 4, row, background);
-        JSAMPROW pointer = row.data();
-        encoder.run([&] { jpeg_write_scanlines(&encoder.jpeg, &pointer, 1); });
+        const auto row = std::span(rgba).subspan(std::size_t(y) * row_samples, row_samples);
+        auto* rgbx = const_cast<std::uint8_t*>(rgbx_row(row, room, background));  // libjpeg knows no const
+        encoder.run([&] { jpeg_write_scanlines(&encoder.jpeg, &rgbx, 1); });
     }
 }
 

@@ -178,6 +178,21 @@ TEST(ImageFile, JpegLiesOnTheBackgroundAndKeepsProfileAndResolution) {
               encode(sample_image<std::uint8_t>(true), "jpeg", {{}, 95}).size());
 }
 
+TEST(ImageFile, JpegFindsTheOneClearPixelOfARow) {
+    for (const std::size_t clear : {0u, 7u, 15u}) {
+        Image image = sample_image<std::uint8_t>(true, 16, 16);
+        std::vector<std::uint8_t> rgba(1024, 200);
+        for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;
+        rgba[(5 * 16 + clear) * 4 + 3] = 0;
+        image.rgba = rgba;
+        const Image back = decode(encode(image, "jpeg", {{60, 60, 60}, 100}));
+        // At quality 100 the coefficients round by at most a half each: 2 grey levels at a pixel.
+        for (int x = 0; x < 16; ++x)
+            for (const int y : {4, 5, 6})
+                EXPECT_NEAR(pixel(back, x, y)[0], y == 5 && x == int(clear) ? 60 : 200, 2) << x << ", " << y;
+    }
+}
+
 TEST(ImageFile, JpegHasItsColoursAtFullSize) {
     Image image = sample_image<std::uint8_t>(true, 16, 16);
     for (std::size_t i = 0; i < 1024; ++i)  // red and blue columns, one pixel wide
