@@ -10,8 +10,9 @@ namespace probewarp {
 
 namespace {
 
-/// Texels along a tile's side. It is a constant, so that the same document gives the same bytes everywhere.
-constexpr int layer_side = 1024;
+/// Texels along a tile's sides: wide and low, so that whole rows are soon done. They are constants, so that
+/// the same document gives the same bytes everywhere.
+constexpr int layer_width = 4096, layer_height = 256;
 
 struct Box {
     glm::dvec2 least, most;  ///< image pixels
@@ -81,19 +82,20 @@ ExportJob::ExportJob(Renderer& renderer, const Document& document, const Deforma
         image_.rgba = std::vector<std::uint16_t>(samples);
     else
         image_.rgba = std::vector<std::uint8_t>(samples);
-    tile_ = layer_side / settings.samples;
-    tiles_ = {(view_.width + tile_ - 1) / tile_, (view_.height + tile_ - 1) / tile_};
+    tile_ = {layer_width / settings.samples, layer_height / settings.samples};
+    tiles_ = {(view_.width + tile_[0] - 1) / tile_[0], (view_.height + tile_[1] - 1) / tile_[1]};
+    shrunk_ = shrunk_triangles(deformation, view_);
 }
 
 void ExportJob::step() {
     assert(!done());
-    const int left = next_ % tiles_[0] * tile_, top = next_ / tiles_[0] * tile_;
+    const int left = next_ % tiles_[0] * tile_[0], top = next_ / tiles_[0] * tile_[1];
     View tile = view_;
     tile.origin += glm::dvec2(left, top) / view_.scale;
-    tile.width = std::min(tile_, view_.width - left);
-    tile.height = std::min(tile_, view_.height - top);
-    renderer_.draw(tile, settings_.samples, settings_.overlay);
-    renderer_.read_back(image_, left, top, tile, settings_.samples, settings_.background);
+    tile.width = std::min(tile_[0], view_.width - left);
+    tile.height = std::min(tile_[1], view_.height - top);
+    renderer_.render(image_, left, top, tile,
+                     {settings_.samples, settings_.background, settings_.overlay, any_within(shrunk_, tile)});
     ++next_;
 }
 

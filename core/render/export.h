@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "model/deformation.h"
+#include "render/footprints.h"
 #include "render/renderer.h"
 
 namespace probewarp {
@@ -41,7 +42,7 @@ class ExportJob {
     double progress() const { return double(next_) / (tiles_[0] * tiles_[1]); }
     /// As far as it is rendered: rows [0, finished_rows()) are final. Stays where it is until take().
     const Image& image() const { return image_; }
-    int finished_rows() const { return std::min(next_ / tiles_[0] * tile_, view_.height); }
+    int finished_rows() const { return std::min(next_ / tiles_[0] * tile_[1], view_.height); }
     /// Renders the next tile.
     void step();
     /// The exported picture, with the original's depth, colour profile and resolution. Requires done().
@@ -52,7 +53,8 @@ class ExportJob {
     ExportSettings settings_;
     View view_;
     Image image_;
-    int tile_ = 0;                ///< side of a tile, exported pixels
+    std::vector<Footprint> shrunk_;
+    std::array<int, 2> tile_{};   ///< width and height of a tile, exported pixels
     std::array<int, 2> tiles_{};  ///< along x and y
     int next_ = 0;
 };

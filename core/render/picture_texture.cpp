@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
+#include <type_traits>
 
 namespace probewarp {
 
@@ -32,12 +34,26 @@ std::vector<Sample> half_size(const std::vector<Sample>& from, int width, int he
     return to;
 }
 
+bool is_opaque(const Image& image, int first_row, int rows) {
+    return std::visit(
+        [&](const auto& samples) {
+            using Sample = typename std::decay_t<decltype(samples)>::value_type;
+            const std::size_t row = std::size_t(image.width) * 4, first = std::size_t(first_row) * row;
+            Sample all = std::numeric_limits<Sample>::max();
+            for (std::size_t i = first + 3; i < first + std::size_t(rows) * row; i += 4)
+                all = Sample(all & samples[i]);
+            return all == std::numeric_limits<Sample>::max();
+        },
+        image.rgba);
+}
+
 }  // namespace
 
-std::vector<Image> smaller_levels(const Image& image) {
+std::vector<Image> smaller_levels(const Image& image, int most) {
     std::vector<Image> levels;
+    levels.reserve(32);  // more than halvings there are: `from` stays where it is
     const Image* from = &image;
-    while (from->width > 1 || from->height > 1) {
+    while (int(levels.size()) < most && (from->width > 1 || from->height > 1)) {
         Image next;
         next.width = std::max(1, from->width / 2);
         next.height = std::max(1, from->height / 2);
@@ -60,7 +76,7 @@ void check_texture_size(const Image& image) {
 PictureUpload::PictureUpload(const Image& image, std::span<const Image> levels)
     : image_(image), levels_(levels) {
     check_texture_size(image);
-    texture_ = {make_texture(), image.width, image.height, int(levels.size())};
+    texture_ = {make_texture(), image.width, image.height, int(levels.size()), true};
     glBindTexture(GL_TEXTURE_2D, texture_.texture.name());
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, texture_.last_level);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
@@ -87,6 +103,7 @@ void PictureUpload::step() {
                     deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
                     pixel_bytes(from).data() + std::size_t(row_) * row_bytes);
     check_gl("uploading the picture");
+    if (level_ == 0) texture_.opaque = texture_.opaque && is_opaque(from, row_, rows);
     row_ += rows;
     if (row_ == from.height) row_ = 0, ++level_;
 }
@@ -96,8 +113,8 @@ PictureTexture PictureUpload::take() {
     return std::move(texture_);
 }
 
-PictureTexture upload_picture(const Image& image) {
-    const std::vector<Image> levels = smaller_levels(image);
+PictureTexture upload_picture(const Image& image, int most_levels) {
+    const std::vector<Image> levels = smaller_levels(image, most_levels);
     PictureUpload upload(image, levels);
     while (!upload.done()) upload.step();
     return upload.take();

@@ -9,14 +9,16 @@
 
 namespace probewarp {
 
-/// The picture's mipmaps from half its size down to one pixel: each pixel the alpha-weighted mean of four.
-std::vector<Image> smaller_levels(const Image& image);
+/// The picture's mipmaps from half its size down to one pixel, but no more than `most`: each pixel the
+/// alpha-weighted mean of four.
+std::vector<Image> smaller_levels(const Image& image, int most = 32);
 
 /// A picture as the graphics driver holds it.
 struct PictureTexture {
     GlTexture texture;
     int width = 0, height = 0;
     int last_level = 0;  ///< the smallest mipmap
+    bool opaque = true;  ///< everywhere
 };
 
 /// Throws Error where the driver has no texture as large as the image.
@@ -41,8 +43,8 @@ class PictureUpload {
     int level_ = 0, row_ = 0;
 };
 
-/// All of it at once.
-PictureTexture upload_picture(const Image& image);
+/// All of it at once, with at most so many mipmaps.
+PictureTexture upload_picture(const Image& image, int most_levels = 32);
 
 /// A texture for the window's toolkit to draw, smoothly scaled. levels: a picture and its mipmaps, down to
 /// one pixel. The driver could make these, but a software rasteriser would compile a shader to do so.

@@ -54,6 +54,9 @@ void clear_window(int width, int height, glm::vec3 colour) {
 Renderer::Renderer()
     : mesh_program_([] { return make_program(shaders::mesh_vert, shaders::mesh_frag); }),
       mesh_overlay_program_([] { return make_program(shaders::mesh_vert, shaders::mesh_frag, "OVERLAY"); }),
+      straight_program_([] { return make_program(shaders::mesh_vert, shaders::mesh_frag, "STRAIGHT"); }),
+      straight_unshrunk_program_(
+          [] { return make_program(shaders::mesh_vert, shaders::mesh_frag, "STRAIGHT_UNSHRUNK"); }),
       resolve_program_([] { return make_program(shaders::screen_vert, shaders::resolve_frag); }),
       display_program_([] { return make_program(shaders::screen_vert, shaders::display_frag); }),
       lines_program_([] { return make_program(shaders::mesh_vert, shaders::lines_frag); }),
@@ -136,20 +139,53 @@ void Renderer::draw(const View& view, int samples, bool with_overlay) {
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    if (moved_ || with_overlay) {
-        mesh_.draw();
-    } else {
-        glBindVertexArray(picture_array_.name());
-        glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    }
+    draw_shape(with_overlay);
     glDisable(GL_BLEND);
+    check_gl("drawing the picture");
+}
+
+void Renderer::draw_shape(bool with_overlay) {
+    if (moved_ || with_overlay) return mesh_.draw();
+    glBindVertexArray(picture_array_.name());
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+void Renderer::render(Image& image, int left, int top, const View& view, const FileStyle& style) {
+    const bool with_overlay = style.overlay && overlay_style_;
+    if (!picture_.opaque || style.samples > 1 || with_overlay) {
+        draw(view, style.samples, with_overlay);
+        return read_back(image, left, top, view, style.samples, style.background);
+    }
+    draw_straight(view, image.bits() == 16, style);
+    read_integers(image, left, top, view);
+}
+
+void Renderer::draw_straight(const View& view, bool deep, const FileStyle& style) {
+    resize(integers_, view.width, view.height, deep ? GL_RGBA16UI : GL_RGBA8UI);
+    begin(integers_);
+    const Colour fill = style.background.value_or(Colour{});
+    const GLuint one = deep ? 257 : 1, full = style.background ? 255 * one : 0;
+    const GLuint beside[4]{fill.r * one, fill.g * one, fill.b * one, full};
+    const GLuint nothing[4]{};
+    glClearBufferuiv(GL_COLOR, 0, style.background ? beside : nothing);
+    const GlProgram& program = (style.shrunk ? straight_program_ : straight_unshrunk_program_).get();
+    glUseProgram(program.name());
+    set_view(program, view, 1);
+    set(program, "picture", 0);
+    set(program, "largest", deep ? 65535.0f : 255.0f);
+    if (style.shrunk) set(program, "last_level", picture_.last_level);
+    glBindTexture(GL_TEXTURE_2D, picture_.texture.name());
+    draw_shape(false);
     check_gl("drawing the picture");
 }
 
 void Renderer::read_back(Image& image, int left, int top, const View& view, int samples,
                          std::optional<Colour> background) {
-    assert(left >= 0 && top >= 0 && left + view.width <= image.width && top + view.height <= image.height);
-    const bool deep = image.bits() == 16;
+    resolve(view, image.bits() == 16, samples, background);
+    read_integers(image, left, top, view);
+}
+
+void Renderer::resolve(const View& view, bool deep, int samples, std::optional<Colour> background) {
     resize(integers_, view.width, view.height, deep ? GL_RGBA16UI : GL_RGBA8UI);
     begin(integers_);
     const GlProgram& program = resolve_program_.get();
@@ -163,7 +199,10 @@ void Renderer::read_back(Image& image, int left, int top, const View& view, int 
     glBindTexture(GL_TEXTURE_2D, layer_.texture.name());
     glBindVertexArray(empty_array_.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+}
 
+void Renderer::read_integers(Image& image, int left, int top, const View& view) {
+    assert(left >= 0 && top >= 0 && left + view.width <= image.width && top + view.height <= image.height);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_PACK_ROW_LENGTH, image.width);
@@ -171,7 +210,8 @@ void Renderer::read_back(Image& image, int left, int top, const View& view, int 
     std::visit(
         [&](auto& samples_of) {
             glReadPixels(0, 0, view.width, view.height, GL_RGBA_INTEGER,
-                         deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, samples_of.data() + first);
+                         sizeof samples_of[0] == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
+                         samples_of.data() + first);
         },
         image.rgba);
     glPixelStorei(GL_PACK_ROW_LENGTH, 0);

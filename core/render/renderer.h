@@ -53,6 +53,14 @@ struct OverlayStyle {
 inline constexpr std::array<Colour, 4> heat_colours{
     {{0x0d, 0x08, 0x87}, {0x9c, 0x17, 0x9e}, {0xed, 0x79, 0x53}, {0xf0, 0xf9, 0x21}}};
 
+/// How a picture for a file is drawn.
+struct FileStyle {
+    int samples = 1;                   ///< samples x samples a target pixel
+    std::optional<Colour> background;  ///< empty: as transparent as it is
+    bool overlay = false;
+    bool shrunk = true;  ///< false: nothing is drawn smaller than the picture has it, mipmaps are not wanted
+};
+
 class Renderer {
   public:
     /// Needs a loaded context, which must outlive it. What draws throws Error where a shader does not
@@ -82,6 +90,10 @@ class Renderer {
     void read_back(Image& image, int left, int top, const View& view, int samples,
                    std::optional<Colour> background);
 
+    /// draw and read_back. An opaque picture at one sample a pixel has nothing to blend or average and is
+    /// drawn into the integers at once, to the same values.
+    void render(Image& image, int left, int top, const View& view, const FileStyle& style);
+
     /// Shows what draw drew with one sample a pixel: over a checkerboard of squares of `square` pixels inside
     /// the image's frame, dimmed beside it; with the mesh's lines where asked. Returns the texture that holds
     /// it.
@@ -93,9 +105,14 @@ class Renderer {
   private:
     void set_view(const GlProgram& program, const View& view, int samples) const;
     void use_mesh_program(const View& view, int samples, bool with_overlay);
+    void draw_shape(bool with_overlay);
+    void draw_straight(const View& view, bool deep, const FileStyle& style);
+    void resolve(const View& view, bool deep, int samples, std::optional<Colour> background);
+    void read_integers(Image& image, int left, int top, const View& view);
     void draw_lines(const View& view, glm::vec4 colour);
 
-    LazyProgram mesh_program_, mesh_overlay_program_, resolve_program_, display_program_, lines_program_;
+    LazyProgram mesh_program_, mesh_overlay_program_, straight_program_, straight_unshrunk_program_,
+        resolve_program_, display_program_, lines_program_;
     GlVertexArray picture_array_, empty_array_;
     GlBuffer picture_corners_;
     DrawnMesh mesh_;

@@ -371,7 +371,7 @@ TEST(Pixels, OfSoftEdges) {
 TEST(Pixels, OfAFold) {
     check_pixels("soft.png", 8, 8, {{16, 32, 46, 30, 10, 20}, {48, 32, 20, 34, -10, 20}}, "osmesa");
 }
-TEST(Pixels, AcrossTiles) {
+TEST(Pixels, OfAWidePicture) {
     check_pixels("wide.png", 55, 2,
                  {{900, 20, 910, 16, 6, 100}, {1024, 20, 1018, 24, -8, 100}, {200, 20, 200, 20, 0, 100}},
                  "osmesa");
