@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 
+#include "model/over_blocks.h"
 #include "model/sum_of.h"
 
 namespace probewarp {
@@ -90,20 +91,20 @@ std::vector<VertexRun> repainted(const Document& before, const Document& after, 
     return runs;
 }
 
-std::vector<bool> anchored_vertices(const Mesh& mesh) {
-    std::vector<bool> anchored(mesh.rest.size());
-    for (const std::uint32_t v : mesh.anchors)
-        if (v != no_vertex) anchored[v] = true;
+std::vector<std::uint32_t> anchored_vertices(const Mesh& mesh) {
+    std::vector<std::uint32_t> anchored = mesh.anchors;
+    std::erase(anchored, no_vertex);
+    std::sort(anchored.begin(), anchored.end());
     return anchored;
 }
 
-void open_anchor(const Binding& binding, const std::vector<bool>& anchored, std::size_t vertex, float covered,
-                 std::span<float> row) {
+void open_anchor(const Binding& binding, std::span<const std::uint32_t> anchored, std::size_t vertex,
+                 float covered, std::span<float> row) {
     // The cell's corners are all of its vertices that may be nobody's own.
     std::array<std::uint32_t, 4> corners{};
     std::size_t count = 0;
     for (const std::uint32_t v : grid_corners(*binding.mesh, binding.mesh->rest[vertex]))
-        if (v != no_vertex && !anchored[v]) corners[count++] = v;
+        if (v != no_vertex && !std::ranges::binary_search(anchored, v)) corners[count++] = v;
     const float own = (count > 0 ? 1 - covered : 1) / float(sum_of(row));
     for (float& w : row) w *= own;
     for (std::size_t k = 0; k < count; ++k) {
@@ -121,7 +122,7 @@ void settle_run(const Document& document, const Binding& binding, VertexRun run,
     std::vector<std::uint8_t> locked(probes);
     for (std::size_t i = 0; i < probes; ++i) locked[i] = document.probes[i].locked;
     const bool painted = is_painted(document);
-    const std::vector<bool> anchored = painted ? anchored_vertices(*binding.mesh) : std::vector<bool>();
+    const std::vector<std::uint32_t> anchored = anchored_vertices(*binding.mesh);
     for (std::size_t k = 0; k < run.count; ++k) {
         const auto automatic = std::span(binding.automatic).subspan((run.first + k) * probes, probes);
         const auto row = weights.subspan(k * probes, probes);
@@ -135,7 +136,9 @@ void settle_run(const Document& document, const Binding& binding, VertexRun run,
             covered = std::max(covered, paint[i].coverage);
         }
         if (covered == 0) continue;  // where nothing is painted the weights stay as they are
-        if (anchored[run.first + k]) open_anchor(binding, anchored, run.first + k, covered, row);
+        const auto vertex = std::uint32_t(run.first + k);
+        if (std::ranges::binary_search(anchored, vertex))
+            open_anchor(binding, anchored, vertex, covered, row);
         settle(row, paint, locked, row);
     }
     if (is_limited(document) && !document.stiffness)
@@ -233,9 +236,14 @@ void stiffen(const Mesh& mesh, std::span<const float> stiffness, std::size_t pro
 
 std::vector<float> refined_weights(const Document& document, const Binding& binding) {
     const std::size_t probes = document.probes.size();
-    const VertexRun all{0, binding.mesh->rest.size()};
-    std::vector<float> weights(all.count * probes);
-    settle_run(document, binding, all, weights);
+    const std::size_t vertices = binding.mesh->rest.size();
+    constexpr std::size_t as_many_as = 8;  // a weight is about as much work as that many of a deformation
+    std::vector<float> weights(vertices * probes);
+    over_blocks({0, vertices}, vertices, probes * as_many_as, [&](VertexRun part) {
+        settle_run(document, binding, part,
+                   std::span(weights).subspan(part.first * probes, part.count * probes));
+        return std::size_t{0};
+    });
     if (document.stiffness) {
         const auto stiffness =
             stiffness_at(*document.stiffness, frame_of(document.picture->image), binding.mesh->rest);

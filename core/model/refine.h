@@ -24,14 +24,15 @@ std::vector<VertexRun> repainted(const Document& before, const Document& after, 
 /// weights: run.count x #probes, row-major
 void settle_run(const Document& document, const Binding& binding, VertexRun run, std::span<float> weights);
 
-/// Whether each vertex is a probe's own: #vertices.
-std::vector<bool> anchored_vertices(const Mesh& mesh);
+/// The vertices that are a probe's own, ascending.
+std::vector<std::uint32_t> anchored_vertices(const Mesh& mesh);
 
 /// At its own vertex a probe has all the automatic weight, and nobody is there to divide what paint takes
 /// from it. So the more of the vertex is `covered`, in [0, 1], the more its row becomes the mean of the rows
-/// at its cell's corners. row: #probes, in: the vertex's automatic weights; out: likewise, summing to 1
-void open_anchor(const Binding& binding, const std::vector<bool>& anchored, std::size_t vertex, float covered,
-                 std::span<float> row);
+/// at its cell's corners. anchored: as above; row: #probes, in: the vertex's automatic weights; out:
+/// likewise, summing to 1
+void open_anchor(const Binding& binding, std::span<const std::uint32_t> anchored, std::size_t vertex,
+                 float covered, std::span<float> row);
 
 /// Makes regions rigid: vertices that hang together where the stiffness is at least a half are a region, and
 /// less stiff ones beside it belong to it too; each vertex of stiffness s takes the part s of the region's

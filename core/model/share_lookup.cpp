@@ -99,7 +99,7 @@ void ShareLookup::at(glm::dvec2 point, std::span<float> shares) const {
     for (std::size_t k = 0; k < 3; ++k) {
         rows[k] = weights_.data() + place.corners[k] * probes;
         part[k] = float(place.barycentric[int(k)]) * to_share_[place.corners[k]];
-        if (covered == 0 || !anchored_[place.corners[k]]) continue;
+        if (covered == 0 || !std::ranges::binary_search(anchored_, place.corners[k])) continue;
         opened_[k].assign(rows[k], rows[k] + probes);
         open_anchor(*deformation_.binding, anchored_, place.corners[k], covered, opened_[k]);
         rows[k] = opened_[k].data();

@@ -42,7 +42,7 @@ class ShareLookup {
     PictureFrame frame_;
     std::vector<Painted> painted_;                      ///< whose paint is settled here
     std::vector<std::uint8_t> locked_;                  ///< #probes
-    std::vector<bool> anchored_;                        ///< #vertices: whether it is a probe's own
+    std::vector<std::uint32_t> anchored_;               ///< the vertices that are a probe's own, ascending
     mutable std::vector<Paint> paint_;                  ///< #probes: scratch
     mutable std::array<std::vector<float>, 3> opened_;  ///< #probes each: likewise
 };

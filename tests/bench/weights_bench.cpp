@@ -33,6 +33,8 @@ Document document_with(int width, int height, int cells, int probes, double way)
     return document;
 }
 
+constexpr int side = 3464;  // of a picture of 12 megapixels
+
 /// One stroke on the first probe, as the brush tool paints it: each dab is on the deformed picture before the
 /// next falls.
 struct Painting {
@@ -42,14 +44,14 @@ struct Painting {
     Stroke stroke;
     Brush brush;
 
-    explicit Painting(int cells) : document(document_with(4000, 3000, cells, 30, 200)) {
-        brush.radius = 4000 / 16.0;  // the tool's own
+    explicit Painting(int cells) : document(document_with(side, side, cells, 30, 200)) {
+        brush.radius = side / 16.0;  // the tool's own
         begin();
     }
 
     /// On blank paint again.
     void begin() {
-        map = new_paint_map(4000, 3000);
+        map = new_paint_map(side, side);
         stroke = {map, {}, {}};
         document.probes[0].paint = nullptr;
         update(deformation, document);
@@ -67,15 +69,15 @@ struct Painting {
     }
 };
 
-constexpr int around = 64;  // dabs; so they lie 100 pixels apart, farther than the brush's own spacing
+constexpr int around = 64;  // dabs; so they lie some 94 pixels apart, farther than the brush's own spacing
 
 /// A point on a loop well within the picture.
 glm::dvec2 on_loop(int dab) {
     const double angle = 2 * M_PI * dab / around;
-    return {2000 + 1200 * std::cos(angle), 1500 + 900 * std::sin(angle)};
+    return side / 2.0 + double(side) * glm::dvec2(0.3 * std::cos(angle), 0.25 * std::sin(angle));
 }
 
-/// 12 megapixels, 30 probes, the largest map of paint. The memory is that of the whole loop, 6600 pixels
+/// 12 megapixels, 30 probes, the largest map of paint. The memory is that of the whole loop, 6000 pixels
 /// long.
 void dab_to_vertices(benchmark::State& state) {
     Painting painting{int(state.range(0))};

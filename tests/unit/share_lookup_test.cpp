@@ -53,7 +53,8 @@ TEST(ShareLookup, SettlesThePaintOfThePlaceItself) {
         // At a probe's own vertex paint opens the automatic weights: the next test.
         const auto anchored = anchored_vertices(mesh_of(bare));
         const auto at = locate_at_rest(mesh_of(bare), point);
-        RC_PRE(std::ranges::none_of(at->corners, [&](std::uint32_t v) { return anchored[v]; }));
+        RC_PRE(std::ranges::none_of(
+            at->corners, [&](std::uint32_t v) { return std::ranges::binary_search(anchored, v); }));
         auto wanted = looked_up(bare, point);
         std::vector<Paint> paint(3);
         std::vector<std::uint8_t> locked;
