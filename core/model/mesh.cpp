@@ -249,13 +249,27 @@ std::optional<MeshPoint> seen_from(const Mesh& mesh, std::span<const glm::vec2> 
     return MeshPoint{{t[0], t[1], t[2]}, *at, std::uint32_t(triangle)};
 }
 
+/// Whether the box around a triangle holds `point`: few do, and this is quickly seen. Rows lie below each
+/// other, so y goes first.
+bool is_near(const Mesh& mesh, std::span<const glm::vec2> vertices, std::size_t triangle, glm::dvec2 point) {
+    constexpr double rounding = 1e-4;  // pixels: more than `edge` is of the largest picture
+    const auto* t = mesh.triangles.data() + 3 * triangle;
+    const glm::vec2 a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
+    const auto within = [](float p, float q, float r, double at) {
+        return double(std::min({p, q, r})) <= at + rounding && double(std::max({p, q, r})) >= at - rounding;
+    };
+    return within(a.y, b.y, c.y, point.y) && within(a.x, b.x, c.x, point.x);
+}
+
 }  // namespace
 
 std::optional<MeshPoint> locate(const Mesh& mesh, std::span<const glm::vec2> vertices, glm::dvec2 point) {
     assert(vertices.size() == mesh.rest.size());
     constexpr double edge = -1e-9;  // a point on a shared edge belongs to either, never to none
-    for (std::size_t t = mesh.triangles.size() / 3; t-- > 0;)
+    for (std::size_t t = mesh.triangles.size() / 3; t-- > 0;) {
+        if (!is_near(mesh, vertices, t, point)) continue;
         if (auto at = seen_from(mesh, vertices, t, point); at && least(at->barycentric) >= edge) return at;
+    }
     return {};
 }
 

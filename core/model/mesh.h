@@ -37,9 +37,11 @@ struct Mesh {
     glm::dvec2 size{0};  ///< of the picture, image pixels
     /// #vertices; image pixels. Those of the grid row by row from the top-left corner, then the probes' own.
     std::vector<glm::vec2> rest;
-    /// #triangles x 3 places in `rest`, cell after cell, row by row. A cell is cut from its top-left to its
-    /// bottom-right corner; a triangle with a probe inside or on its edge is cut again from there
-    /// to its corners.
+    /// #triangles x 3 places in `rest`, cell after cell, row by row: a later one is drawn over an earlier
+    /// one, so that of two pieces that overlap the one from lower down lies on top, all of it. (In narrow
+    /// strips 0.6 vertices a triangle would be shaded in place of 1, but overlaps would be torn at each.) A
+    /// cell is cut from its top-left to its bottom-right corner; a triangle with a probe inside or on its
+    /// edge is cut again from there to its corners.
     std::vector<std::uint32_t> triangles;
     /// rows x columns + 1: the first triangle of each cell; a cell that is left out has none.
     std::vector<std::uint32_t> first_triangle;

@@ -64,6 +64,48 @@ TEST(Mesh, IsCutFromTopLeftToBottomRightAndTurnsOneWay) {
     });
 }
 
+/// How many vertices are shaded by a graphics card that remembers the last `size` of them (first in, first
+/// out).
+std::size_t shaded_vertices(const Mesh& mesh, std::size_t size) {
+    std::vector<std::uint32_t> cache;
+    std::size_t shaded = 0;
+    for (const std::uint32_t v : mesh.triangles) {
+        if (std::find(cache.begin(), cache.end(), v) != cache.end()) continue;
+        ++shaded;
+        cache.push_back(v);
+        if (cache.size() > size) cache.erase(cache.begin());
+    }
+    return shaded;
+}
+
+TEST(Mesh, AVertexIsShadedOnceForTheCellsAboveItAndOnceForThoseBelow) {
+    // Row by row it cannot be less where a row does not fit into the cache; the smallest one suffices for
+    // this.
+    const Mesh mesh = grid_mesh(1000, 700, 100);
+    EXPECT_EQ(shaded_vertices(mesh, 16), 2u * 101 * 70);
+    const Mesh narrow = grid_mesh(7, 1000, 700);  // five cells across: a row fits
+    EXPECT_EQ(narrow.columns, 5);
+    EXPECT_EQ(shaded_vertices(narrow, 16), narrow.rest.size());
+}
+
+TEST(Mesh, WhereCellsAreLeftOutOrProbesCutThemNoVertexIsShadedMoreOftenThanThat) {
+    expect_always("twice at most, but for the neighbours of probes", [] {
+        Image image;
+        image.width = *whole(20, 500);
+        image.height = *whole(20, 500);
+        const int cells = *whole(20, 100);
+        const auto [columns, rows] = grid_size(image.width, image.height, cells);
+        std::vector<std::uint8_t> kept(std::size_t(columns) * std::size_t(rows));
+        for (auto& cell : kept) cell = std::uint8_t(*whole(0, 3) > 0);
+        std::vector<glm::dvec2> rests;
+        for (int i = *whole(0, 3); i > 0; --i)
+            rests.emplace_back(*real(0, image.width), *real(0, image.height));
+        const Mesh mesh = probe_mesh(image, cells, kept, rests);
+        // A probe adds its vertex, and may push the five around it out of the cache once more.
+        RC_ASSERT(shaded_vertices(mesh, 16) <= 2 * mesh.rest.size() + 6 * rests.size());
+    });
+}
+
 double distance(glm::dvec2 a, glm::dvec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 TEST(Mesh, EveryPointOfThePictureIsFoundWhereItIs) {
@@ -97,6 +139,31 @@ TEST(Mesh, WhereItFoldsTheLastDrawnIsFound) {
     ASSERT_TRUE(at);
     // 4 pixels from the left is 6 pixels into the folded cell; exact in floats but for the division.
     EXPECT_LT(distance(rest_point(mesh, *at), {16, 5}), 1e-12);
+}
+
+TEST(Mesh, HoweverItIsDeformedTheLastTriangleThatHoldsAPointIsFound) {
+    expect_always("none that comes later has the point on the inner side of its three edges", [] {
+        const Mesh mesh = grid_mesh(40, 30, *whole(1, 6));
+        std::vector<glm::vec2> vertices;
+        for (const glm::vec2 v : mesh.rest)
+            vertices.push_back(v + glm::vec2(float(*real(-15, 15)), float(*real(-15, 15))));
+        const glm::dvec2 p{*real(-10, 50), *real(-10, 40)};
+        std::optional<std::uint32_t> last;
+        for (std::uint32_t t = 0; t < mesh.triangles.size() / 3; ++t) {
+            int left = 0, right = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const glm::dvec2 from = vertices[mesh.triangles[3 * t + k]];
+                const glm::dvec2 way = glm::dvec2(vertices[mesh.triangles[3 * t + (k + 1) % 3]]) - from;
+                const double side = way.x * (p.y - from.y) - way.y * (p.x - from.x);
+                RC_PRE(std::abs(side) > 1e-3);  // on an edge either is right
+                ++(side > 0 ? left : right);
+            }
+            if (left == 3 || right == 3) last = t;
+        }
+        const auto at = locate(mesh, vertices, p);
+        RC_ASSERT(at.has_value() == last.has_value());
+        if (at) RC_ASSERT(at->triangle == *last);
+    });
 }
 
 TEST(Mesh, CellsWithoutAreaAreNotFound) {
