@@ -1,5 +1,7 @@
 #include "model/refine.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -114,35 +116,59 @@ void open_anchor(const Binding& binding, std::span<const std::uint32_t> anchored
     }
 }
 
-void settle_run(const Document& document, const Binding& binding, VertexRun run, std::span<float> weights) {
-    const std::size_t probes = document.probes.size();
-    assert(weights.size() == run.count * probes);
-    const PictureFrame frame = frame_of(document.picture->image);
-    std::vector<Paint> paint(probes);
-    std::vector<std::uint8_t> locked(probes);
-    for (std::size_t i = 0; i < probes; ++i) locked[i] = document.probes[i].locked;
-    const bool painted = is_painted(document);
-    const std::vector<std::uint32_t> anchored = anchored_vertices(*binding.mesh);
+namespace {
+
+/// What settling vertices needs of a document.
+struct Settling {
+    const Document& document;
+    const Binding& binding;
+    PictureFrame frame;
+    std::vector<std::uint8_t> locked;     ///< #probes
+    std::vector<std::uint32_t> anchored;  ///< as anchored_vertices gives them
+};
+
+/// weights: run.count x #probes
+void settle_painted(const Settling& settling, VertexRun run, std::span<float> weights) {
+    const std::span<const Probe> probes = settling.document.probes;
+    std::vector<Paint> paint(probes.size());
     for (std::size_t k = 0; k < run.count; ++k) {
-        const auto automatic = std::span(binding.automatic).subspan((run.first + k) * probes, probes);
-        const auto row = weights.subspan(k * probes, probes);
-        std::copy(automatic.begin(), automatic.end(), row.begin());
-        if (!painted) continue;
-        const glm::dvec2 place = binding.mesh->rest[run.first + k];
+        const auto vertex = std::uint32_t(run.first + k);
+        const glm::dvec2 place = settling.binding.mesh->rest[vertex];
         float covered = 0;
-        for (std::size_t i = 0; i < probes; ++i) {
-            const PaintMap* map = document.probes[i].paint.get();
-            paint[i] = map ? sample(*map, to_texels(*map, frame, place)) : Paint{};
+        for (std::size_t i = 0; i < probes.size(); ++i) {
+            const PaintMap* map = probes[i].paint.get();
+            paint[i] = map ? sample(*map, to_texels(*map, settling.frame, place)) : Paint{};
             covered = std::max(covered, paint[i].coverage);
         }
         if (covered == 0) continue;  // where nothing is painted the weights stay as they are
-        const auto vertex = std::uint32_t(run.first + k);
-        if (std::ranges::binary_search(anchored, vertex))
-            open_anchor(binding, anchored, vertex, covered, row);
-        settle(row, paint, locked, row);
+        const auto row = weights.subspan(k * probes.size(), probes.size());
+        if (std::ranges::binary_search(settling.anchored, vertex))
+            open_anchor(settling.binding, settling.anchored, vertex, covered, row);
+        settle(row, paint, settling.locked, row);
     }
-    if (is_limited(document) && !document.stiffness)
-        keep_heaviest(std::size_t(document.weights.most), probes, weights);
+}
+
+}  // namespace
+
+void settle_run(const Document& document, const Binding& binding, VertexRun run, std::span<float> weights) {
+    const std::size_t probes = document.probes.size();
+    assert(weights.size() == run.count * probes);
+    if (probes == 0) return;
+    Settling settling{
+        document, binding, frame_of(document.picture->image), {}, anchored_vertices(*binding.mesh)};
+    for (const Probe& probe : document.probes) settling.locked.push_back(probe.locked);
+    const bool painted = is_painted(document), limited = is_limited(document) && !document.stiffness;
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    constexpr std::size_t as_many_as = 8;  // a weight is about as much work as that many of a deformation
+    const std::size_t grain = least_weights / (probes * as_many_as) + 1;
+    oneapi::tbb::parallel_for(Range(0, run.count, grain), [&](const Range& range) {
+        const VertexRun part{run.first + range.begin(), range.size()};
+        const auto automatic = std::span(binding.automatic).subspan(part.first * probes, part.count * probes);
+        const auto rows = weights.subspan(range.begin() * probes, part.count * probes);
+        std::copy(automatic.begin(), automatic.end(), rows.begin());
+        if (painted) settle_painted(settling, part, rows);
+        if (limited) keep_heaviest(std::size_t(document.weights.most), probes, rows);
+    });
 }
 
 std::vector<float> stiffness_at(const PaintMap& paint, const PictureFrame& frame,
@@ -236,14 +262,9 @@ void stiffen(const Mesh& mesh, std::span<const float> stiffness, std::size_t pro
 
 std::vector<float> refined_weights(const Document& document, const Binding& binding) {
     const std::size_t probes = document.probes.size();
-    const std::size_t vertices = binding.mesh->rest.size();
-    constexpr std::size_t as_many_as = 8;  // a weight is about as much work as that many of a deformation
-    std::vector<float> weights(vertices * probes);
-    over_blocks({0, vertices}, vertices, probes * as_many_as, [&](VertexRun part) {
-        settle_run(document, binding, part,
-                   std::span(weights).subspan(part.first * probes, part.count * probes));
-        return std::size_t{0};
-    });
+    const VertexRun all{0, binding.mesh->rest.size()};
+    std::vector<float> weights(all.count * probes);
+    settle_run(document, binding, all, weights);
     if (document.stiffness) {
         const auto stiffness =
             stiffness_at(*document.stiffness, frame_of(document.picture->image), binding.mesh->rest);

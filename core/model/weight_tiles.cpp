@@ -1,10 +1,12 @@
 #include "model/weight_tiles.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include "model/over_blocks.h"
@@ -32,14 +34,20 @@ float put_in_tile(WeightTiles& tiles, VertexRun run, const float* weights) {
 
 /// Writes a run into the tiles; returns the largest of its vertices' sums. weights: as put's
 float put_in_tiles(WeightTiles& tiles, VertexRun run, const float* weights) {
-    float largest = 0;
-    for (std::size_t done = 0; done < run.count;) {
-        const std::size_t v = run.first + done;
-        const std::size_t count = std::min(tile_width - v % tile_width, run.count - done);
-        largest = std::max(largest, put_in_tile(tiles, {v, count}, weights + done * tiles.probes));
-        done += count;
-    }
-    return largest;
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    const std::size_t grain = least_weights / (tile_width * tiles.probes) + 1, end = run.first + run.count;
+    return oneapi::tbb::parallel_reduce(
+        Range(run.first / tile_width, (end + tile_width - 1) / tile_width, grain), 0.0f,
+        [&](const Range& range, float largest) {
+            for (std::size_t tile = range.begin(); tile < range.end(); ++tile) {
+                const std::size_t first = std::max(tile * tile_width, run.first);
+                const VertexRun part{first, std::min((tile + 1) * tile_width, end) - first};
+                const float* from = weights + (first - run.first) * tiles.probes;
+                largest = std::max(largest, put_in_tile(tiles, part, from));
+            }
+            return largest;
+        },
+        [](float a, float b) { return std::max(a, b); });
 }
 
 }  // namespace
@@ -54,13 +62,7 @@ WeightTiles make_tiles(std::span<const float> weights, std::size_t probes, Align
     if (room.size() != blocks * tile_block * probes) room = {};  // which it would copy as it grows
     room.resize(blocks * tile_block * probes);
     WeightTiles tiles{vertices, probes, std::move(room), 0};
-    std::mutex one;
-    over_blocks({0, tiles.vertices}, tiles.vertices, probes, [&](VertexRun part) {
-        const float largest = put_in_tiles(tiles, part, weights.data() + part.first * probes);
-        const std::scoped_lock lock(one);
-        tiles.largest_sum = std::max(tiles.largest_sum, largest);
-        return std::size_t{0};
-    });
+    tiles.largest_sum = put_in_tiles(tiles, {0, vertices}, weights.data());
     for (std::size_t v = tiles.vertices; v < blocks * tile_block; ++v)
         for (std::size_t i = 0; i < probes; ++i)
             tiles.weights[place_in(tiles, v) + i * tile_width] = i == 0 ? 1.0f : 0.0f;

@@ -10,6 +10,7 @@
 
 #include "model/brush.h"
 #include "model/deformation.h"
+#include "model/paint_ops.h"
 #include "model/weights.h"
 
 namespace probewarp {
@@ -109,6 +110,18 @@ void first_dab(benchmark::State& state) {
     }
 }
 BENCHMARK(first_dab)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
+
+/// One probe's paint filled all over, and taken away at the next turn: the mean of both.
+void fill_or_clear(benchmark::State& state) {
+    Painting painting{int(state.range(0))};
+    const auto full = std::make_shared<const PaintMap>(filled(painting.map, 0.5f));
+    for (auto _ : state) {
+        auto& paint = painting.document.probes[0].paint;
+        paint = paint ? nullptr : full;
+        update(painting.deformation, painting.document);
+    }
+}
+BENCHMARK(fill_or_clear)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
 
 /// From the document's change to the deformed vertices, with so many cells and 16 probes before it.
 template <class Change>
