@@ -174,6 +174,8 @@ int run_command_line(int argc, char** argv, int (*open_window)(const std::string
     add_info(app, info_options);
     try {
         app.parse(argc, argv);
+        if (!app.get_subcommands().empty() && app.count("--deform") > 0)
+            throw UsageError("--deform: before a command it is nobody's; expected it behind render");
         if (app.got_subcommand("render"))
             return render(render_options);
         else if (app.got_subcommand("weights"))

@@ -70,9 +70,10 @@ std::string deform_facts(const App& app) {
 std::string deform_explanation(const App& app) {
     const DeformChoice choice = deform_choice(app);
     const auto& times = app.deform_measurement.times;
-    std::string text =
-        fmt::format("While a probe is dragged the {} moves the vertices: {}. The menu View has the choice.",
-                    choice.by == DeformBy::shader ? "vertex shader" : "processor", choice.why);
+    std::string text = fmt::format("While a probe is dragged the {}: {}. The menu View has the choice.",
+                                   choice.by == DeformBy::shader ? "vertex shader moves what blends by DLB"
+                                                                 : "processor moves the vertices",
+                                   choice.why);
     if (times)
         text += fmt::format(
             "\nMeasured once, a step of a drag of {} vertices by {} probes: processor {:.3f} ms, vertex "

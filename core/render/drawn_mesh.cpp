@@ -130,6 +130,9 @@ void DrawnMesh::move(std::span<const DualComplex<float>> transformations, glm::v
     bind_texels(program, "weights", 1, weights_texture_);
     bind_texels(program, "transformations", 2, transformations_texture_);
     glActiveTexture(GL_TEXTURE0);
+    // A context without a surface has no framebuffer, and none draws without one, not even nothing.
+    resize(nowhere_, 1, 1, GL_RGBA8);
+    glBindFramebuffer(GL_FRAMEBUFFER, nowhere_.framebuffer.name());
     glBindVertexArray(rest_array_.name());
     glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, now_.name());
     glEnable(GL_RASTERIZER_DISCARD);
@@ -138,6 +141,7 @@ void DrawnMesh::move(std::span<const DualComplex<float>> transformations, glm::v
     glEndTransformFeedback();
     glDisable(GL_RASTERIZER_DISCARD);
     glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
     held_.clear();
     check_gl("moving the mesh");
 }

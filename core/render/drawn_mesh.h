@@ -53,6 +53,7 @@ class DrawnMesh {
     GlBuffer rest_, now_, more_, triangles_, edges_, weights_, transformations_;
     GlTexture weights_texture_, transformations_texture_;
     LazyProgram mover_;
+    Target nowhere_;
     std::vector<glm::vec2> held_;  ///< what `now_` holds; empty where that is not known
     std::vector<std::uint32_t> corners_;
     std::size_t vertices_ = 0, edge_count_ = 0, uploaded_ = 0;

@@ -42,6 +42,11 @@ class Info(unittest.TestCase):
         times = re.search(r"10201 vertices by 8 probes: processor ([\d.]+) ms, shader ([\d.]+) ms\n", output)
         self.assertTrue(all(float(time) > 0 for time in times.groups()), output)
 
+    def test_the_windows_option_is_not_a_commands(self):
+        done = subprocess.run([PROGRAM, "--deform", "shader", "info", OCTOPUS], capture_output=True, text=True, timeout=120)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertEqual(done.stderr, "probewarp: --deform: before a command it is nobody's; expected it behind render\n")
+
 
 class Render(unittest.TestCase):
     def setUp(self):

@@ -100,12 +100,12 @@ void prepare(Renderer& renderer, const Document& document, const Deformation& de
     renderer.set_positions(deformation.now, deformation.moved);
 }
 
-TEST(VertexShader, DeformsAsTheProcessorDoes) {
+void expect_shader_deforms_as_the_processor(const char* backend) {
     constexpr unsigned seed = 20261122;
     std::printf("seed %u\n", seed);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> place(0, 256), way(-20, 20), angle(-1, 1);
-    const auto context = open_context("osmesa");
+    const auto context = open_context(backend);
     Renderer renderer;
     for (const int probes : {0, 1, 3, 20}) {
         Document document;
@@ -127,11 +127,11 @@ TEST(VertexShader, DeformsAsTheProcessorDoes) {
         EXPECT_EQ(deformation.cancelled > 0, probes == 3);
         renderer.set_picture(upload_picture(document.picture->image));
         renderer.set_mesh(mesh_of(deformation));
-        renderer.set_positions(deformation.now, deformation.moved);
-        const Image processor = exported(renderer, document, deformation);
         renderer.set_weights(weights_of(deformation));
         renderer.set_pose(deformation.transformations, {128, 128});
         const Image shader = exported(renderer, document, deformation);
+        renderer.set_positions(deformation.now, deformation.moved);
+        const Image processor = exported(renderer, document, deformation);
         // A hundredth of a pixel is 2.6 of the 256 levels that the ramp climbs a pixel; on the border, a
         // pixel may be covered by one of the two only.
         int far = 0;
@@ -141,6 +141,11 @@ TEST(VertexShader, DeformsAsTheProcessorDoes) {
                     far += std::abs(pixel(processor, x, y)[k] - pixel(shader, x, y)[k]) > 3;
         EXPECT_LE(far, probes == 0 ? 0 : 8) << probes << " probes";
     }
+}
+
+TEST(VertexShader, DeformsAsTheProcessorDoes) { expect_shader_deforms_as_the_processor("osmesa"); }
+TEST(VertexShader, DeformsSoWithoutAFramebufferOfTheContext) {
+    expect_shader_deforms_as_the_processor("egl");
 }
 
 TEST(DeformChoice, IsAskedForOrTheQuickerOneAndNeverTheShaderOfASoftwareRasteriser) {
