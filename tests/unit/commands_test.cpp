@@ -242,6 +242,20 @@ TEST_F(CommandsTest, SwitchesAndTools) {
     EXPECT_FALSE(press_key(editor, {'J', true}));
 }
 
+TEST_F(CommandsTest, OneOfThreeChoicesSaysWhoDeforms) {
+    const std::vector<std::pair<const char*, DeformBy>> choices{
+        {"Deform by the graphics card", DeformBy::shader},
+        {"Deform by the processor", DeformBy::processor},
+        {"Deform by whichever is quicker", DeformBy::automatic}};
+    EXPECT_EQ(editor.deform_by, DeformBy::automatic);
+    for (const auto& [label, by] : choices) {
+        probewarp::run(editor, find_command(label));
+        EXPECT_EQ(editor.deform_by, by);
+        for (const auto& [other, ignored] : choices)
+            EXPECT_EQ(find_command(other).on(editor), std::string_view(other) == label) << other;
+    }
+}
+
 TEST_F(CommandsTest, NothingRunsWhileSomethingIsDragged) {
     open_with({probe_at({100, 80}, {120, 80})});
     press(editor, {.at = on_canvas({120, 80})});
