@@ -25,12 +25,12 @@ pkg_check_modules(exif REQUIRED IMPORTED_TARGET libexif)
 pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
 pkg_check_modules(freetype REQUIRED IMPORTED_TARGET freetype2)
 
-# OpenGL 3.3 core, loaded by glad: generated here, from the specification that Debian's python3-glad carries.
+# OpenGL 3.3 core and ARB_texture_storage where there is one, loaded by glad: generated here, from the specification that Debian's python3-glad carries.
 find_program(GLAD_PROGRAM glad PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
 set(glad_dir ${CMAKE_BINARY_DIR}/glad)
 add_custom_command(
     OUTPUT ${glad_dir}/src/gl.c ${glad_dir}/include/glad/gl.h
-    COMMAND ${GLAD_PROGRAM} --quiet --reproducible --api gl:core=3.3 --extensions "" --out-path ${glad_dir} c
+    COMMAND ${GLAD_PROGRAM} --quiet --reproducible --api gl:core=3.3 --extensions GL_ARB_texture_storage --out-path ${glad_dir} c
     COMMENT "Generating the OpenGL loader" VERBATIM)
 add_library(glad STATIC ${glad_dir}/src/gl.c)
 target_include_directories(glad SYSTEM PUBLIC ${glad_dir}/include)

@@ -28,6 +28,33 @@ void Progress::clear() {
     shown_ = false;
 }
 
+Output::Output(const std::optional<std::filesystem::path>& path, Timings& timings) : timings_(timings) {
+    if (path) file_.emplace(*path);
+}
+
+void Output::write(const FileParts& parts) {
+    if (!file_) kept_.insert(kept_.end(), parts.begin(), parts.end());
+    if (!file_ || parts.empty()) return;
+    timings_.measure(Stage::write, [&] {
+        for (const auto& part : parts) file_->write(part);
+    });
+}
+
+void Output::restart() {
+    if (file_) file_->restart();
+    kept_.clear();
+}
+
+void Output::finish() {
+    timings_.measure(Stage::write, [&] {
+        if (file_) return file_->finish();
+        bool good = true;
+        for (const auto& part : kept_)
+            good = good && std::fwrite(part.data(), 1, part.size(), stdout) == part.size();
+        if (!good || std::fflush(stdout) != 0) throw Error("cannot write to standard output");
+    });
+}
+
 Drawer::Drawer(const RenderPlan& plan) : plan_(plan), context_(open_context(plan.options.backend)) {}
 
 namespace {
@@ -42,27 +69,48 @@ void show_heat(Renderer& renderer, const Deformation& deformation, const RenderO
     renderer.set_overlay(weight_overlay(deformation, probe), style);
 }
 
+/// The image; what is left has its size and the rest, but no pixels.
+Image pixels_taken_from(Image& image) {
+    Image taken = image.bits() == 16 ? Image{image.width, image.height, std::vector<std::uint16_t>(), {}, {}}
+                                     : Image{image.width, image.height, std::vector<std::uint8_t>(), {}, {}};
+    taken.rgba.swap(image.rgba);
+    return taken;
+}
+
 }  // namespace
 
-std::unique_ptr<Drawn> Drawer::draw(const Document& document, const Deformation& deformation,
-                                    const std::function<void(double)>& show) {
-    const Image& picture = document.picture->image;
-    renderer_.set_picture(upload_picture(picture));
+/// Hands the document's picture and deformed mesh to the renderer.
+void Drawer::hold(const Document& document, const Deformation& deformation) {
+    const View view = export_view(document, deformation, plan_.settings);
+    const int levels = wanted_levels(shrunk_triangles(deformation, view));
+    Picture& picture = *std::const_pointer_cast<Picture>(document.picture);
+    std::vector<std::byte>().swap(picture.original);
+    renderer_.set_picture(upload_picture(pixels_taken_from(picture.image), levels));
     renderer_.set_mesh(mesh_of(deformation));
     if (plan_.options.deform == "shader") {
         renderer_.set_weights(weights_of(deformation));
-        renderer_.set_pose(deformation.transformations, glm::vec2(centre(picture)));
+        renderer_.set_pose(deformation.transformations, glm::vec2(centre(picture.image)));
     } else {
         renderer_.set_positions(deformation.now, deformation.moved);
     }
     show_heat(renderer_, deformation, plan_.options);
-    auto drawn = std::make_unique<Drawn>(renderer_, document, deformation, plan_);
-    while (!drawn->job.done()) {
-        drawn->job.step();
-        drawn->encoding.advance(drawn->job.finished_rows());
-        show(drawn->job.progress());
+}
+
+std::unique_ptr<ImageEncoding> Drawer::draw(const Document& document, const Deformation& deformation,
+                                            Output& output, const std::function<void(double)>& show) {
+    hold(document, deformation);
+    ExportJob job(renderer_, document, deformation, plan_.settings);
+    for (bool transparent = job.may_be_transparent();; transparent = !transparent) {
+        auto encoding = std::make_unique<ImageEncoding>(plan_.format, job.like(), plan_.encode, transparent);
+        while (!job.done() && encoding->fits()) {
+            encoding->add(job.next_band());
+            output.write(encoding->take());
+            show(job.progress());
+        }
+        if (encoding->fits()) return encoding;
+        job.restart();
+        output.restart();
     }
-    return drawn;
 }
 
 }  // namespace probewarp

@@ -3,10 +3,14 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "cli/commands.h"
+#include "cli/timings.h"
+#include "io/file.h"
 #include "io/image_encoding.h"
 #include "render/context.h"
 #include "render/export.h"
@@ -34,15 +38,20 @@ class Progress {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// A picture that is drawn, and mostly encoded.
-struct Drawn {
-    ExportJob job;
-    ImageEncoding encoding;
+/// Where a picture goes: a file, or standard output, which gets everything at the end.
+class Output {
+  public:
+    /// path: none for standard output
+    Output(const std::optional<std::filesystem::path>& path, Timings& timings);
+    void write(const FileParts& parts);
+    /// Forgets what was written.
+    void restart();
+    void finish();
 
-    Drawn(Renderer& renderer, const Document& document, const Deformation& deformation,
-          const RenderPlan& plan)
-        : job(renderer, document, deformation, plan.settings),
-          encoding(plan.format, job.image(), plan.encode) {}
+  private:
+    Timings& timings_;
+    std::optional<FileWriter> file_;  ///< empty: standard output
+    FileParts kept_;                  ///< for that
 };
 
 /// Draws one document after the other, all on the thread that made it.
@@ -51,12 +60,16 @@ class Drawer {
     /// The plan must outlive it. Throws Error where there is no context.
     explicit Drawer(const RenderPlan& plan);
 
-    /// Draws, while what is drawn already is being encoded. show: called with the part that is done. Throws
-    /// Error.
-    std::unique_ptr<Drawn> draw(const Document& document, const Deformation& deformation,
-                                const std::function<void(double)>& show);
+    /// Draws, while what is drawn already is being encoded and written; finish() of what it returns is still
+    /// to be written. The document's picture has lost its file's bytes
+    /// and its pixels afterwards: so the most that is there at once is less. Its Picture must not be a
+    /// constant. show: called with the part that is done. Throws Error.
+    std::unique_ptr<ImageEncoding> draw(const Document& document, const Deformation& deformation,
+                                        Output& output, const std::function<void(double)>& show);
 
   private:
+    void hold(const Document& document, const Deformation& deformation);
+
     const RenderPlan& plan_;
     std::unique_ptr<Context> context_;  // first in, last out
     Renderer renderer_;

@@ -100,16 +100,21 @@ void check_heat(const RenderOptions& o, Kind kind, const Document& document) {
             "--iso-lines: these are of one probe's share; expected a probe, not all, with --heat");
 }
 
-void write_output(const std::string& path, std::span<const std::byte> bytes) {
-    if (path != "-") return write_file(path, bytes);
-    if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
-        throw Error("cannot write to standard output");
+std::optional<std::filesystem::path> output_path(const RenderOptions& o) {
+    if (o.output == "-") return {};
+    return o.output;
+}
+
+void write_output(const RenderOptions& o, std::span<const std::byte> bytes, Timings& timings) {
+    Output output(output_path(o), timings);
+    output.write({{bytes.begin(), bytes.end()}});
+    output.finish();
 }
 
 /// The one picture of `--image`, or null for the input's own.
 PicturePtr other_picture(const RenderOptions& o) {
     if (o.images.empty()) return nullptr;
-    return std::make_shared<const Picture>(read_picture(o.images.front()));
+    return std::make_shared<Picture>(read_picture(o.images.front()));
 }
 
 void check_not_the_input(const RenderOptions& o, const std::filesystem::path& output) {
@@ -132,11 +137,12 @@ void render_picture(const RenderOptions& o, const ImageFormat& format, const Doc
     const RenderPlan plan = plan_of(o, format);
     export_view(document, deformation, plan.settings);  // refuses what is too large before anything is opened
     Progress progress(o.quiet);
-    const auto drawn = timings.measure(Stage::draw, [&] {
-        return Drawer(plan).draw(document, deformation, [&](double part) { progress.show(part); });
+    Output output(output_path(o), timings);
+    const auto encoding = timings.measure(Stage::draw, [&] {
+        return Drawer(plan).draw(document, deformation, output, [&](double part) { progress.show(part); });
     });
-    const auto bytes = timings.measure(Stage::encode, [&] { return drawn->encoding.finish(); });
-    timings.measure(Stage::write, [&] { write_output(o.output, bytes); });
+    output.write(timings.measure(Stage::encode, [&] { return encoding->finish(); }));
+    output.finish();
 }
 
 void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
@@ -149,14 +155,14 @@ void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
         timings.measure(Stage::decode, [&] { return posed_on(read_document(o.input), other_picture(o), o); });
     check_deform(o, document);
     check_heat(o, format.kind, document);
-    if (format.kind == Kind::project) return write_output(o.output, encode_project(document));
+    if (format.kind == Kind::project) return write_output(o, encode_project(document), timings);
     if (o.output != "-") check_not_the_input(o, o.output);
 
     Deformation deformation;
     timings.measure(Stage::weights, [&] { update(deformation, document); });
     if (format.kind == Kind::image) return render_picture(o, *format.image, document, deformation, timings);
     const std::string text = encode_obj(document, deformation);
-    write_output(o.output, std::as_bytes(std::span(text)));
+    write_output(o, std::as_bytes(std::span(text)), timings);
 }
 
 /// `--image A B C`: what would be wrong with every one of them is said before the first.

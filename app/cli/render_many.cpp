@@ -9,6 +9,7 @@
 
 #include <map>
 #include <new>
+#include <optional>
 #include <span>
 
 #include "cli/arguments.h"
@@ -64,7 +65,8 @@ struct Work {
     std::string image;
     fs::path output;
     Document document;
-    std::unique_ptr<Drawn> drawn;
+    std::optional<Output> file;
+    std::unique_ptr<ImageEncoding> encoding;
     std::string error;
     tbb::task_group task;  ///< the decoding, later the writing
 
@@ -114,8 +116,7 @@ class Batch {
         work.task.run([this, &work] {
             work.keep_error([&] {
                 timings_.measure(Stage::decode, [&] {
-                    work.document =
-                        pose_on_(base_, std::make_shared<const Picture>(read_picture(work.image)));
+                    work.document = pose_on_(base_, std::make_shared<Picture>(read_picture(work.image)));
                 });
             });
         });
@@ -125,8 +126,9 @@ class Batch {
         work.task.wait();
         work.keep_error([&] {
             timings_.measure(Stage::weights, [&] { deform(work.document); });
-            work.drawn = timings_.measure(Stage::draw, [&] {
-                return drawer_.draw(work.document, deformation_, [&](double part) {
+            work.file.emplace(work.output, timings_);
+            work.encoding = timings_.measure(Stage::draw, [&] {
+                return drawer_.draw(work.document, deformation_, *work.file, [&](double part) {
                     progress_.show((double(index) + part) / double(works_.size()));
                 });
             });
@@ -134,11 +136,11 @@ class Batch {
         work.document = {};
         work.task.run([this, &work] {
             work.keep_error([&] {
-                const auto bytes =
-                    timings_.measure(Stage::encode, [&] { return work.drawn->encoding.finish(); });
-                timings_.measure(Stage::write, [&] { write_file(work.output, bytes); });
+                work.file->write(timings_.measure(Stage::encode, [&] { return work.encoding->finish(); }));
+                work.file->finish();
             });
-            work.drawn.reset();
+            work.encoding.reset();
+            work.file.reset();
         });
     }
 

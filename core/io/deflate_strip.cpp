@@ -59,13 +59,28 @@ LastBlock last_block(std::span<std::byte> deflated, std::size_t raw_bytes) {
 
 }  // namespace
 
+namespace {
+
+/// Room for deflating: this thread's, until it asks again. To get some each time would be to have it cleared
+/// each time.
+std::span<std::byte> room(std::size_t bytes) {
+    thread_local std::vector<std::byte> kept;
+    if (kept.size() < bytes) kept.resize(bytes);
+    return std::span(kept).first(bytes);
+}
+
+std::vector<std::byte> copy(std::span<const std::byte> bytes) { return {bytes.begin(), bytes.end()}; }
+
+}  // namespace
+
 std::vector<std::byte> deflate_whole(Bytes raw, int level) {
     const Compressor compressor(libdeflate_alloc_compressor(level), &libdeflate_free_compressor);
     if (!compressor) throw std::bad_alloc();
-    std::vector<std::byte> out(libdeflate_deflate_compress_bound(compressor.get(), raw.size()));
-    out.resize(libdeflate_deflate_compress(compressor.get(), raw.data(), raw.size(), out.data(), out.size()));
-    assert(!out.empty());
-    return out;
+    const auto out = room(libdeflate_deflate_compress_bound(compressor.get(), raw.size()));
+    const std::size_t size =
+        libdeflate_deflate_compress(compressor.get(), raw.data(), raw.size(), out.data(), out.size());
+    assert(size > 0);
+    return copy(out.first(size));
 }
 
 void open_end(std::vector<std::byte>& deflated, std::size_t raw_bytes) {
@@ -92,13 +107,12 @@ std::vector<std::byte> deflate_quickly(Bytes raw, bool whole) {
     stream.end_of_stream = whole ? 1 : 0;
     stream.next_in = const_cast<std::uint8_t*>(reinterpret_cast<const std::uint8_t*>(raw.data()));
     stream.avail_in = std::uint32_t(raw.size());
-    std::vector<std::byte> out(raw.size() + raw.size() / 16 + 512);
+    const auto out = room(raw.size() + raw.size() / 16 + 512);
     stream.next_out = reinterpret_cast<std::uint8_t*>(out.data());
     stream.avail_out = std::uint32_t(out.size());
     if (isal_deflate(&stream) != COMP_OK || stream.avail_in > 0 || stream.avail_out == 0)
         throw Error("cannot be written as PNG: ISA-L cannot deflate it");
-    out.resize(stream.total_out);
-    return out;
+    return copy(out.first(stream.total_out));
 }
 
 }  // namespace probewarp

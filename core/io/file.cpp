@@ -134,6 +134,10 @@ struct Temporary {
         }
     }
 
+    void restart() const {
+        if (::ftruncate(fd, 0) != 0 || ::lseek(fd, 0, SEEK_SET) != 0) fail(errno);
+    }
+
     /// The bytes reach the disk before the name does: otherwise a crash could leave an empty file in the old
     /// one's place.
     void finish() {
@@ -158,28 +162,71 @@ void take_over_permissions(int fd, const struct stat& old) {
     if (::fchmod(fd, old.st_mode & 07777) != 0) fail(errno);
 }
 
-void save(const fs::path& path, std::span<const std::byte> bytes) {
-    const fs::path target = follow_links(path);
-    struct stat old {};
-    const bool replaces = ::lstat(target.c_str(), &old) == 0;
-    if (!replaces && errno != ENOENT) fail(errno);
-    if (replaces && !S_ISREG(old.st_mode)) throw SaveError{"it " + kind(old.st_mode)};
-    if (!target.has_filename()) throw SaveError{"it names no file"};
-    if (replaces && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail(errno);
-
-    const Descriptor folder(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    // Nobody reads in the temporary file what the old one kept from them.
-    Temporary temporary(target, replaces ? old.st_mode & 0600 : 0666);
-    if (replaces) take_over_permissions(temporary.fd, old);
-    temporary.write(bytes);
-    temporary.finish();
-    temporary.rename_to(target);
-    // The new file stands whole by now, so neither a folder that we may not open nor a file system that
-    // cannot sync one is a failure.
-    if (folder.fd >= 0) ::fsync(folder.fd);
+/// Does a step of saving, and says what is the matter with the path where it fails.
+template <class Step>
+void saving(const fs::path& path, const Step& step) {
+    try {
+        step();
+    } catch (const SaveError& error) {
+        throw Error("cannot save " + printable(path.native()) + ": " + error.why);
+    }
 }
 
 }  // namespace
+
+/// A save under way: what was found at the path, and the file beside it.
+struct FileWriter::Saving {
+    fs::path target;
+    struct stat old {};
+    bool replaces;
+    Descriptor folder;
+    Temporary temporary;
+
+    explicit Saving(const fs::path& path)
+        : target(follow_links(path)),
+          replaces(look(target, old)),
+          folder(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)),
+          // Nobody reads in the temporary file what the old one kept from them.
+          temporary(target, replaces ? old.st_mode & 0600 : 0666) {
+        if (replaces) take_over_permissions(temporary.fd, old);
+    }
+
+    /// Whether there is a file to be replaced, and that it may be.
+    static bool look(const fs::path& target, struct stat& old) {
+        const bool replaces = ::lstat(target.c_str(), &old) == 0;
+        if (!replaces && errno != ENOENT) fail(errno);
+        if (replaces && !S_ISREG(old.st_mode)) throw SaveError{"it " + kind(old.st_mode)};
+        if (!target.has_filename()) throw SaveError{"it names no file"};
+        if (replaces && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail(errno);
+        return replaces;
+    }
+
+    void finish() {
+        temporary.finish();
+        temporary.rename_to(target);
+        // The new file stands whole by now, so neither a folder that we may not open nor a file system that
+        // cannot sync one is a failure.
+        if (folder.fd >= 0) ::fsync(folder.fd);
+    }
+};
+
+FileWriter::FileWriter(const fs::path& path) : path_(path) {
+    saving(path_, [&] { saving_ = std::make_unique<Saving>(path); });
+}
+
+FileWriter::~FileWriter() = default;
+
+void FileWriter::write(std::span<const std::byte> bytes) {
+    saving(path_, [&] { saving_->temporary.write(bytes); });
+}
+
+void FileWriter::restart() {
+    saving(path_, [&] { saving_->temporary.restart(); });
+}
+
+void FileWriter::finish() {
+    saving(path_, [&] { saving_->finish(); });
+}
 
 std::vector<std::byte> read_file(const fs::path& path, std::size_t limit) {
     // Asked before it is opened, since opening is enough to set some devices going; asked again once it is
@@ -199,11 +246,9 @@ std::vector<std::byte> read_file(const fs::path& path, std::size_t limit) {
 }
 
 void write_file(const fs::path& path, std::span<const std::byte> bytes) {
-    try {
-        save(path, bytes);
-    } catch (const SaveError& error) {
-        throw Error("cannot save " + printable(path.native()) + ": " + error.why);
-    }
+    FileWriter writer(path);
+    writer.write(bytes);
+    writer.finish();
 }
 
 void make_folder(const fs::path& path) {

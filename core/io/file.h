@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,26 @@ std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t 
 /// caller may not write, although its folder would allow to replace it. Other hard links to the old file keep
 /// the old bytes; access control lists and extended attributes are not carried over.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// A file's bytes, in parts one after the other.
+using FileParts = std::vector<std::vector<std::byte>>;
+
+/// write_file in portions: until finish(), nothing is seen of what was written, and nothing is left of it
+/// where it never comes to that. Everything throws as write_file does.
+class FileWriter {
+  public:
+    explicit FileWriter(const std::filesystem::path& path);
+    ~FileWriter();
+    void write(std::span<const std::byte> bytes);
+    /// Begins again with nothing written.
+    void restart();
+    void finish();
+
+  private:
+    struct Saving;
+    std::filesystem::path path_;
+    std::unique_ptr<Saving> saving_;
+};
 
 /// Makes the folder, and those it lies in, where they are missing. Throws Error, naming it, where it cannot.
 void make_folder(const std::filesystem::path& path);

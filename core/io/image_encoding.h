@@ -1,34 +1,54 @@
 // An image on its way into a file while its rows are still being drawn.
 #pragma once
 
+#include <tbb/task_group.h>
+
 #include <memory>
 #include <vector>
 
+#include "io/file.h"
 #include "io/image_file.h"
 
 namespace probewarp {
 
 class PngRows;
+class JpegRows;
 
-/// format.encode in portions: the same bytes, of which PNG's are worked out as rows come and the others' at
-/// the end.
+/// format.encode in portions: the same bytes. PNG and JPEG are worked out as rows come and keep few of them;
+/// the others keep all to the end.
 class ImageEncoding {
   public:
-    /// format: one that is written. The image has its final size, and stays where it is until this is gone.
-    ImageEncoding(const ImageFormat& format, const Image& image, const EncodeOptions& options);
+    /// format: one that is written. like: has the image's size, depth, profile and resolution; its pixels are
+    /// not looked at. transparent: whether any of the image will be, as far as can be told; of use to PNG,
+    /// which leaves the alpha of an opaque image out.
+    ImageEncoding(const ImageFormat& format, const Image& like, const EncodeOptions& options,
+                  bool transparent);
     ~ImageEncoding();
 
-    /// The first `rows` rows stand, no fewer than before. Returns at once.
-    void advance(int rows);
+    /// The next rows, from the top: an image as wide. Throws Error.
+    void add(Image band);
 
-    /// The file's bytes. Requires all rows. Throws Error.
-    std::vector<std::byte> finish();
+    /// False once `transparent` has turned out to be wrong: then all has to be done again, with its contrary.
+    bool fits() const;
+
+    /// What of the file is done, behind what was taken before.
+    FileParts take();
+
+    /// The rest of the file. Requires all rows, and that it fits. Throws Error.
+    FileParts finish();
 
   private:
+    void add_beginning(FileParts& parts);
+
     const ImageFormat& format_;
-    const Image& image_;
     EncodeOptions options_;
-    std::unique_ptr<PngRows> png_;  ///< null for the other formats
+    bool transparent_, opaque_ = true;  ///< as foreseen; the rows so far
+    bool begun_ = false;                ///< whether anything was taken
+    int rows_ = 0;                      ///< that came
+    Image whole_;                       ///< its pixels: for the formats without rows of their own
+    std::unique_ptr<PngRows> png_;
+    std::unique_ptr<JpegRows> jpeg_;
+    tbb::task_group jpeg_task_;  ///< its latest band
 };
 
 }  // namespace probewarp

@@ -18,6 +18,7 @@
 
 #include "io/exif.h"
 #include "io/formats.h"
+#include "io/jpeg_encoder.h"
 
 namespace probewarp {
 
@@ -247,9 +248,7 @@ Image decode_jpeg(Bytes bytes) {
 
 // ---- writing ----
 
-namespace {
-
-struct Encoder {
+struct JpegRows::Encoder {
     Errors errors;
     jpeg_compress_struct jpeg{};
     unsigned char* out = nullptr;
@@ -263,6 +262,8 @@ struct Encoder {
     Encoder(const Encoder&) = delete;
     Encoder& operator=(const Encoder&) = delete;
     ~Encoder() {
+        // `out` is only then where the bytes are: they move as they become more.
+        if (jpeg.dest) jpeg.dest->term_destination(&jpeg);
         jpeg_destroy_compress(&jpeg);
         std::free(out);
     }
@@ -274,6 +275,8 @@ struct Encoder {
         throw Error(std::string("cannot be written as JPEG: ") + errors.message);
     }
 };
+
+namespace {
 
 /// Dots per inch or per centimetre, whichever gives the pixels per metre back; else inches, the finer of the
 /// two. None where neither fits into JFIF's 16 bits.
@@ -341,33 +344,48 @@ const std::uint8_t* rgbx_row(std::span<const std::uint16_t> rgba, std::span<std:
     return room.data();
 }
 
-template <class Sample>
-void write_rows(Encoder& encoder, const Image& image, const std::vector<Sample>& rgba, Colour background) {
-    const std::size_t row_samples = std::size_t(image.width) * 4;
-    std::vector<std::uint8_t> room(row_samples);
-    for (int y = 0; y < image.height; ++y) {
-        const auto row = std::span(rgba).subspan(std::size_t(y) * row_samples, row_samples);
-        auto* rgbx = const_cast<std::uint8_t*>(rgbx_row(row, room, background));  // libjpeg knows no const
-        encoder.run([&] { jpeg_write_scanlines(&encoder.jpeg, &rgbx, 1); });
-    }
-}
-
 }  // namespace
 
-std::vector<std::byte> encode_jpeg(const Image& image, const EncodeOptions& options) {
-    Encoder encoder;
+JpegRows::JpegRows(const Image& like, const EncodeOptions& options)
+    : encoder_(std::make_unique<Encoder>()), background_(options.background) {
+    Encoder& encoder = *encoder_;
     encoder.run([&] {
         jpeg_mem_dest(&encoder.jpeg, &encoder.out, &encoder.out_bytes);
-        set_parameters(encoder.jpeg, image, options.quality);
+        set_parameters(encoder.jpeg, like, options.quality);
         jpeg_start_compress(&encoder.jpeg, TRUE);
-        if (!image.icc.empty() && image.icc.size() <= max_icc_bytes)
-            jpeg_write_icc_profile(&encoder.jpeg, reinterpret_cast<const JOCTET*>(image.icc.data()),
-                                   unsigned(image.icc.size()));
+        if (!like.icc.empty() && like.icc.size() <= max_icc_bytes)
+            jpeg_write_icc_profile(&encoder.jpeg, reinterpret_cast<const JOCTET*>(like.icc.data()),
+                                   unsigned(like.icc.size()));
     });
-    std::visit([&](const auto& rgba) { write_rows(encoder, image, rgba, options.background); }, image.rgba);
-    encoder.run([&] { jpeg_finish_compress(&encoder.jpeg); });
-    const auto* first = reinterpret_cast<const std::byte*>(encoder.out);
-    return {first, first + encoder.out_bytes};
+}
+
+JpegRows::~JpegRows() = default;
+
+void JpegRows::add(const Image& band) {
+    const std::size_t row_samples = std::size_t(band.width) * 4;
+    std::vector<std::uint8_t> room(row_samples);
+    std::visit(
+        [&](const auto& rgba) {
+            for (int y = 0; y < band.height; ++y) {
+                const auto row = std::span(rgba).subspan(std::size_t(y) * row_samples, row_samples);
+                auto* rgbx =
+                    const_cast<std::uint8_t*>(rgbx_row(row, room, background_));  // libjpeg knows no const
+                encoder_->run([&] { jpeg_write_scanlines(&encoder_->jpeg, &rgbx, 1); });
+            }
+        },
+        band.rgba);
+}
+
+std::vector<std::byte> JpegRows::finish() {
+    encoder_->run([&] { jpeg_finish_compress(&encoder_->jpeg); });
+    const auto* first = reinterpret_cast<const std::byte*>(encoder_->out);
+    return {first, first + encoder_->out_bytes};
+}
+
+std::vector<std::byte> encode_jpeg(const Image& image, const EncodeOptions& options) {
+    JpegRows rows(image, options);
+    rows.add(image);
+    return rows.finish();
 }
 
 }  // namespace probewarp

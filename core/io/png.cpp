@@ -1,5 +1,6 @@
-// PNG in through libspng; png_encoder.cpp is the way out. The file's chunk list is walked first, so that libspng sees only whole
-// files, and of those only the chunks that we use: text and the rest cannot cost anything.
+// PNG in through libspng; png_encoder.cpp is the way out. The file's chunk list is walked first, so that
+// libspng sees only whole files, and of those only the chunks that we use: text and the rest cannot cost
+// anything.
 #include <spng.h>
 
 #include <algorithm>

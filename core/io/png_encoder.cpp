@@ -13,6 +13,7 @@
 #include "io/deflate_strip.h"
 #include "io/formats.h"
 #include "io/image_encoding.h"
+#include "io/jpeg_encoder.h"
 #include "io/png_filter.h"
 
 namespace probewarp {
@@ -47,22 +48,33 @@ constexpr Effort effort_of(Compression compression) {
     }
 }
 
-/// What of the samples goes into the file.
-struct Rows {
-    Samples samples;
-    int kept;  ///< channels
-    int first, end;
+std::size_t pixel_bytes_of(const PngShape& shape) { return std::size_t(shape.kept * shape.bits / 8); }
+std::size_t row_bytes_of(const PngShape& shape) { return std::size_t(shape.width) * pixel_bytes_of(shape); }
 
-    std::size_t pixel_bytes() const { return std::size_t(kept * samples.bits / 8); }
-    std::size_t row_bytes() const { return std::size_t(samples.width) * pixel_bytes(); }
+}  // namespace
+
+/// The rows of one strip, and the one above them.
+struct PngStripRows {
+    PngShape shape;
+    int first, end;
+    std::vector<PngRows::Placed> bands;
+
+    const std::byte* row(int y) const {
+        const auto after = std::ranges::find_if(bands, [y](const auto& b) { return b.top > y; });
+        const auto& holds = *std::prev(after);
+        const std::size_t bytes = std::size_t(shape.width) * std::size_t(shape.channels * shape.bits / 8);
+        return holds.band.first.get() + std::size_t(y - holds.top) * bytes;
+    }
 };
+
+namespace {
 
 /// Copies the kept channels of every pixel. from: width x channels; to: width x kept, in the file's byte
 /// order.
 template <class Sample>
-void pack_row(const Sample* from, const Rows& rows, std::uint8_t* to) {
-    const auto channels = std::size_t(rows.samples.channels), kept = std::size_t(rows.kept);
-    for (std::size_t x = 0; x < std::size_t(rows.samples.width); ++x)
+void pack_row(const Sample* from, const PngShape& shape, std::uint8_t* to) {
+    const auto channels = std::size_t(shape.channels), kept = std::size_t(shape.kept);
+    for (std::size_t x = 0; x < std::size_t(shape.width); ++x)
         for (std::size_t c = 0; c < kept; ++c) {
             const Sample sample = from[x * channels + c];
             if constexpr (sizeof(Sample) == 2) *to++ = std::uint8_t(sample >> 8);
@@ -70,35 +82,33 @@ void pack_row(const Sample* from, const Rows& rows, std::uint8_t* to) {
         }
 }
 
-void pack_row(const Rows& rows, int y, std::uint8_t* to) {
-    const std::size_t samples =
-        std::size_t(y) * std::size_t(rows.samples.width) * std::size_t(rows.samples.channels);
-    if (rows.samples.bits == 8 && rows.samples.channels == 4 && rows.kept == 3)
-        drop_alpha({reinterpret_cast<const std::uint8_t*>(rows.samples.first) + samples,
-                    std::size_t(rows.samples.width) * 4},
-                   {to, rows.row_bytes()});
-    else if (rows.samples.bits == 16)
-        pack_row(reinterpret_cast<const std::uint16_t*>(rows.samples.first) + samples, rows, to);
+void pack_row(const std::byte* from, const PngShape& shape, std::span<std::uint8_t> to) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(from);
+    if (shape.bits == 16)
+        pack_row(reinterpret_cast<const std::uint16_t*>(from), shape, to.data());
+    else if (shape.channels == 4 && shape.kept == 3)
+        drop_alpha({bytes, std::size_t(shape.width) * 4}, to);
     else
-        pack_row(reinterpret_cast<const std::uint8_t*>(rows.samples.first) + samples, rows, to);
+        std::ranges::copy(std::span(bytes, to.size()), to.begin());
 }
 
-std::vector<std::uint8_t> filtered(const Rows& rows, FilterSet filters) {
-    const std::size_t bytes = rows.row_bytes();
+std::vector<std::uint8_t> filtered(const PngStripRows& rows, FilterSet filters) {
+    const PngShape& shape = rows.shape;
+    const std::size_t bytes = row_bytes_of(shape);
     std::vector<std::uint8_t> out(std::size_t(rows.end - rows.first) * (bytes + 1));
     std::vector<std::uint8_t> row(bytes), above(bytes);
-    if (rows.first > 0) pack_row(rows, rows.first - 1, above.data());
+    if (rows.first > 0) pack_row(rows.row(rows.first - 1), shape, above);
     for (int y = rows.first; y < rows.end; ++y) {
-        pack_row(rows, y, row.data());
+        pack_row(rows.row(y), shape, row);
         const auto to = std::span(out).subspan(std::size_t(y - rows.first) * (bytes + 1), bytes + 1);
-        filter_row(row, above, rows.pixel_bytes(), filters, to);
+        filter_row(row, above, pixel_bytes_of(shape), filters, to);
         std::swap(row, above);
     }
     return out;
 }
 
 /// Filtered in each of the effort's ways, the one that packs best at a level that is quick.
-std::vector<std::uint8_t> best_filtered(const Rows& rows, const Effort& effort) {
+std::vector<std::uint8_t> best_filtered(const PngStripRows& rows, const Effort& effort) {
     constexpr int trial_level = 2;
     std::vector<std::uint8_t> best = filtered(rows, effort.filters[0]);
     if (effort.filters[1] == 0) return best;
@@ -122,88 +132,6 @@ std::vector<std::byte> deflated_strip(Bytes raw, const Effort& effort, bool last
     return out;
 }
 
-PngStrip strip_of(const Rows& rows, const Effort& effort) {
-    const std::vector<std::uint8_t> raw = best_filtered(rows, effort);
-    const Bytes bytes = std::as_bytes(std::span(raw));
-    std::vector<std::byte> deflated = deflated_strip(bytes, effort, rows.end == rows.samples.height);
-    if (rows.first == 0)
-        deflated.insert(deflated.begin(), {std::byte(effort.zlib[0]), std::byte(effort.zlib[1])});
-    PngStrip strip;
-    strip.crc = libdeflate_crc32(libdeflate_crc32(0, "IDAT", 4), deflated.data(), deflated.size());
-    strip.adler = libdeflate_adler32(1, raw.data(), raw.size());
-    strip.filtered = raw.size();
-    strip.bytes = std::move(deflated);
-    return strip;
-}
-
-/// Whether the alpha of RGBA rows [first, end) is full everywhere.
-template <class Sample>
-bool is_opaque(const Samples& samples, int first, int end) {
-    const auto* rgba = reinterpret_cast<const Sample*>(samples.first);
-    const std::size_t row = std::size_t(samples.width) * 4;
-    for (int y = first; y < end; ++y) {
-        Sample all = std::numeric_limits<Sample>::max();
-        for (std::size_t i = std::size_t(y) * row + 3; i < std::size_t(y + 1) * row; i += 4)
-            all = Sample(all & rgba[i]);
-        if (all != std::numeric_limits<Sample>::max()) return false;
-    }
-    return true;
-}
-
-bool is_opaque(const Samples& samples, int first, int end) {
-    return samples.bits == 16 ? is_opaque<std::uint16_t>(samples, first, end)
-                              : is_opaque<std::uint8_t>(samples, first, end);
-}
-
-}  // namespace
-
-// ---- all strips ----
-
-PngRows::PngRows(const Samples& samples, Compression compression)
-    : samples_(samples), compression_(compression) {
-    restart(samples.channels == 4 ? 3 : samples.channels);
-}
-
-PngRows::~PngRows() {
-    tasks_.cancel();
-    try {
-        tasks_.wait();
-    } catch (...) {  // of no use to anybody any more
-    }
-}
-
-void PngRows::restart(int kept) {
-    tasks_.cancel();
-    tasks_.wait();
-    kept_ = kept;
-    const std::size_t row = Rows{samples_, kept, 0, 0}.row_bytes() + 1;
-    strip_rows_ = int(std::max<std::size_t>(1, effort_of(compression_).strip_bytes / row));
-    strips_.assign(std::size_t((samples_.height + strip_rows_ - 1) / strip_rows_), {});
-    started_ = 0;
-}
-
-void PngRows::advance(int rows) {
-    assert(rows >= rows_ && rows <= samples_.height);
-    if (kept_ == 3 && !is_opaque(samples_, rows_, rows)) restart(4);
-    rows_ = rows;
-    for (; started_ < strips_.size(); ++started_) {
-        const int first = int(started_) * strip_rows_, end = std::min(first + strip_rows_, samples_.height);
-        if (end > rows_) return;
-        tasks_.run([rows = Rows{samples_, kept_, first, end}, &strip = strips_[started_],
-                    effort = effort_of(compression_)] { strip = strip_of(rows, effort); });
-    }
-}
-
-std::vector<PngStrip> PngRows::finish() {
-    assert(rows_ == samples_.height);
-    tasks_.wait();
-    return std::move(strips_);
-}
-
-// ---- the file ----
-
-namespace {
-
 void put_be32(std::vector<std::byte>& to, std::size_t value) {
     for (int shift = 24; shift >= 0; shift -= 8) to.push_back(std::byte(value >> shift & 0xFF));
 }
@@ -222,14 +150,113 @@ void put_chunk(std::vector<std::byte>& to, std::string_view type, Bytes data) {
     put_be32(to, libdeflate_crc32(0, to.data() + first, to.size() - first));
 }
 
-/// IHDR: section 11.2.1. kept: channels in the file
-void put_header(std::vector<std::byte>& to, const Samples& samples, int kept) {
+void make_strip(const PngStripRows& rows, const Effort& effort, PngStrip& strip) {
+    const std::vector<std::uint8_t> raw = best_filtered(rows, effort);
+    const bool last = rows.end == rows.shape.height;
+    std::vector<std::byte> deflated = deflated_strip(std::as_bytes(std::span(raw)), effort, last);
+    if (rows.first == 0)
+        deflated.insert(deflated.begin(), {std::byte(effort.zlib[0]), std::byte(effort.zlib[1])});
+    strip.chunk.reserve(deflated.size() + 12);
+    put_chunk(strip.chunk, "IDAT", deflated);
+    strip.adler = libdeflate_adler32(1, raw.data(), raw.size());
+    strip.filtered = raw.size();
+    strip.done = true;
+}
+
+/// Whether the alpha of RGBA samples is full everywhere.
+template <class Sample>
+bool is_opaque(const std::vector<Sample>& rgba) {
+    Sample all = std::numeric_limits<Sample>::max();
+    for (std::size_t i = 3; i < rgba.size(); i += 4) all = Sample(all & rgba[i]);
+    return all == std::numeric_limits<Sample>::max();
+}
+
+bool is_opaque(const Image& image) {
+    return std::visit([](const auto& rgba) { return is_opaque(rgba); }, image.rgba);
+}
+
+}  // namespace
+
+// ---- all strips ----
+
+namespace {
+
+int rows_of_a_strip(const PngShape& shape, Compression compression) {
+    return int(std::max<std::size_t>(1, effort_of(compression).strip_bytes / (row_bytes_of(shape) + 1)));
+}
+
+}  // namespace
+
+PngRows::PngRows(const PngShape& shape, Compression compression)
+    : shape_(shape),
+      compression_(compression),
+      strip_rows_(rows_of_a_strip(shape, compression)),
+      strips_(std::size_t((shape.height + strip_rows_ - 1) / strip_rows_)) {}
+
+PngRows::~PngRows() {
+    tasks_.cancel();
+    try {
+        tasks_.wait();
+    } catch (...) {  // of no use to anybody any more
+    }
+}
+
+void PngRows::add(const PngBand& band) {
+    const std::size_t most_under_way = (std::size_t{8} << 20) / effort_of(compression_).strip_bytes;
+    assert(rows_ + band.rows <= shape_.height);
+    bands_.push_back({band, rows_});
+    rows_ += band.rows;
+    for (; started_ < strips_.size(); ++started_) {
+        const int first = int(started_) * strip_rows_, end = std::min(first + strip_rows_, shape_.height);
+        while (bands_.front().top + bands_.front().band.rows < first) bands_.pop_front();
+        if (end > rows_) break;
+        const PngStripRows rows{shape_, first, end, {bands_.begin(), bands_.end()}};
+        PngStrip& strip = strips_[started_];
+        // Where the others lag behind, it is done here and now.
+        if (under_way_ >= most_under_way) {
+            make_strip(rows, effort_of(compression_), strip);
+            continue;
+        }
+        ++under_way_;
+        tasks_.run([this, rows, &strip] {
+            make_strip(rows, effort_of(compression_), strip);
+            --under_way_;
+        });
+    }
+}
+
+FileParts PngRows::take() {
+    FileParts chunks;
+    for (; taken_ < strips_.size() && strips_[taken_].done; ++taken_) {
+        PngStrip& strip = strips_[taken_];
+        chunks.push_back(std::move(strip.chunk));
+        adler_ = std::uint32_t(adler32_combine(adler_, strip.adler, z_off_t(strip.filtered)));
+    }
+    return chunks;
+}
+
+FileParts PngRows::finish() {
+    assert(rows_ == shape_.height);
+    tasks_.wait();
+    FileParts chunks = take();
+    std::vector<std::byte> sum;
+    put_be32(sum, adler_);  // RFC 1950, section 2.2: behind the deflated data
+    put_chunk(chunks.emplace_back(), "IDAT", sum);
+    return chunks;
+}
+
+// ---- the file ----
+
+namespace {
+
+/// IHDR: section 11.2.1.
+void put_header(std::vector<std::byte>& to, const PngShape& shape) {
     constexpr std::array<unsigned, 5> colour_types{0, 0, 4, 2, 6};  // by channels
     std::vector<std::byte> data;
-    put_be32(data, std::size_t(samples.width));
-    put_be32(data, std::size_t(samples.height));
-    data.push_back(std::byte(samples.bits));
-    data.push_back(std::byte(colour_types[std::size_t(kept)]));
+    put_be32(data, std::size_t(shape.width));
+    put_be32(data, std::size_t(shape.height));
+    data.push_back(std::byte(shape.bits));
+    data.push_back(std::byte(colour_types[std::size_t(shape.kept)]));
     data.resize(13);  // deflate, the five filters, not interlaced
     put_chunk(to, "IHDR", data);
 }
@@ -257,73 +284,137 @@ void put_resolution(std::vector<std::byte>& to, const std::optional<Resolution>&
     put_chunk(to, "pHYs", data);
 }
 
-/// Each strip an IDAT chunk; the last one ends with the Adler-32 of all.
-void put_strips(std::vector<std::byte>& to, std::span<const PngStrip> strips) {
-    std::size_t size = to.size() + 64;
-    for (const PngStrip& strip : strips) size += strip.bytes.size() + 16;
-    to.reserve(size);
-    uLong adler = 1;
-    for (const PngStrip& strip : strips) {
-        adler = adler32_combine(adler, strip.adler, z_off_t(strip.filtered));
-        const bool last = &strip == &strips.back();
-        std::vector<std::byte> sum;
-        if (last) put_be32(sum, adler);
-        put_be32(to, strip.bytes.size() + sum.size());
-        put_text(to, "IDAT");
-        put_bytes(to, strip.bytes);
-        put_bytes(to, sum);
-        // Asked for the bytes at no address, libdeflate starts anew.
-        put_be32(to, last ? libdeflate_crc32(strip.crc, sum.data(), sum.size()) : strip.crc);
-    }
+/// What stands before the strips.
+std::vector<std::byte> beginning(const PngShape& shape, Bytes icc,
+                                 const std::optional<Resolution>& resolution) {
+    std::vector<std::byte> begin;
+    put_text(begin, "\x89PNG\r\n\x1a\n");
+    put_header(begin, shape);
+    put_profile(begin, icc);
+    put_resolution(begin, resolution);
+    return begin;
 }
 
-Samples rgba_of(const Image& image) {
-    return {pixel_bytes(image).data(), image.width, image.height, 4, image.bits()};
+FileParts rest_of(PngRows& rows) {
+    FileParts parts = rows.finish();
+    put_chunk(parts.emplace_back(), "IEND", {});
+    return parts;
 }
 
-std::vector<std::byte> file_of(const Samples& samples, PngRows& rows, Bytes icc,
-                               const std::optional<Resolution>& resolution) {
-    const std::vector<PngStrip> strips = rows.finish();
-    std::vector<std::byte> file;
-    put_text(file, "\x89PNG\r\n\x1a\n");
-    put_header(file, samples, rows.kept_channels());
-    put_profile(file, icc);
-    put_resolution(file, resolution);
-    put_strips(file, strips);
-    put_chunk(file, "IEND", {});
-    return file;
+std::vector<std::byte> joined(std::vector<std::byte> all, const FileParts& parts) {
+    std::size_t size = all.size();
+    for (const auto& part : parts) size += part.size();
+    all.reserve(size);
+    for (const auto& part : parts) put_bytes(all, part);
+    return all;
+}
+
+PngShape shape_of(const Image& image, bool transparent) {
+    return {image.width, image.height, image.bits(), 4, transparent ? 4 : 3};
+}
+
+/// All of the samples, which the caller keeps.
+PngBand band_of(const std::byte* samples, int rows) {
+    return {std::shared_ptr<const std::byte>(std::shared_ptr<void>(), samples), rows};
+}
+
+/// Rows that the file may be the last to need.
+PngBand band_of(Image image) {
+    const int rows = image.height;
+    const auto kept = std::make_shared<const Image>(std::move(image));
+    return {std::shared_ptr<const std::byte>(kept, pixel_bytes(*kept).data()), rows};
 }
 
 }  // namespace
 
-ImageEncoding::ImageEncoding(const ImageFormat& format, const Image& image, const EncodeOptions& options)
-    : format_(format), image_(image), options_(options) {
-    if (format.encode == &encode_png) png_ = std::make_unique<PngRows>(rgba_of(image), options.compression);
+ImageEncoding::ImageEncoding(const ImageFormat& format, const Image& like, const EncodeOptions& options,
+                             bool transparent)
+    : format_(format), options_(options), transparent_(transparent) {
+    whole_.width = like.width;
+    whole_.height = like.height;
+    whole_.icc = like.icc;
+    whole_.resolution = like.resolution;
+    if (like.bits() == 16) whole_.rgba = std::vector<std::uint16_t>();
+    if (format.encode == &encode_png)
+        png_ = std::make_unique<PngRows>(shape_of(whole_, transparent), options.compression);
+    else if (format.encode == &encode_jpeg)
+        jpeg_ = std::make_unique<JpegRows>(whole_, options);
+    else
+        std::visit([&](auto& rgba) { rgba.reserve(std::size_t(like.width) * std::size_t(like.height) * 4); },
+                   whole_.rgba);
 }
 
-ImageEncoding::~ImageEncoding() = default;
-
-void ImageEncoding::advance(int rows) {
-    if (png_) png_->advance(rows);
+ImageEncoding::~ImageEncoding() {
+    try {
+        jpeg_task_.wait();
+    } catch (...) {  // of no use to anybody any more
+    }
 }
 
-std::vector<std::byte> ImageEncoding::finish() {
-    return png_ ? file_of(rgba_of(image_), *png_, image_.icc, image_.resolution)
-                : format_.encode(image_, options_);
+void ImageEncoding::add(Image band) {
+    assert(band.width == whole_.width && band.bits() == whole_.bits());
+    rows_ += band.height;
+    if (jpeg_) {
+        jpeg_task_.wait();
+        return jpeg_task_.run(
+            [this, rows = std::make_shared<const Image>(std::move(band))] { jpeg_->add(*rows); });
+    }
+    if (png_) {
+        opaque_ = opaque_ && is_opaque(band);
+        return png_->add(band_of(std::move(band)));
+    }
+    std::visit(
+        [&](auto& rgba) {
+            const auto& rows = std::get<std::decay_t<decltype(rgba)>>(band.rgba);
+            rgba.insert(rgba.end(), rows.begin(), rows.end());
+        },
+        whole_.rgba);
+}
+
+bool ImageEncoding::fits() const {
+    if (!png_) return true;
+    return transparent_ ? !opaque_ || rows_ < whole_.height : opaque_;
+}
+
+FileParts ImageEncoding::take() {
+    if (!png_) return {};
+    FileParts parts = png_->take();
+    if (!parts.empty()) add_beginning(parts);
+    return parts;
+}
+
+FileParts ImageEncoding::finish() {
+    assert(rows_ == whole_.height && fits());
+    jpeg_task_.wait();
+    FileParts parts;
+    if (png_) {
+        parts = rest_of(*png_);
+        add_beginning(parts);
+    } else {
+        parts.push_back(jpeg_ ? jpeg_->finish() : format_.encode(whole_, options_));
+    }
+    return parts;
+}
+
+void ImageEncoding::add_beginning(FileParts& parts) {
+    if (begun_) return;
+    begun_ = true;
+    parts.insert(parts.begin(), beginning(shape_of(whole_, transparent_), whole_.icc, whole_.resolution));
 }
 
 std::vector<std::byte> encode_png(const Image& image, const EncodeOptions& options) {
-    PngRows rows(rgba_of(image), options.compression);
-    rows.advance(image.height);
-    return file_of(rgba_of(image), rows, image.icc, image.resolution);
+    const PngShape shape = shape_of(image, !is_opaque(image));
+    PngRows rows(shape, options.compression);
+    rows.add(band_of(pixel_bytes(image).data(), image.height));
+    return joined(beginning(shape, image.icc, image.resolution), rest_of(rows));
 }
 
 std::vector<std::byte> encode_png_samples(int width, int height, int channels,
                                           std::span<const std::uint16_t> grey) {
-    const Samples samples{std::as_bytes(grey).data(), width, height, channels, 16};
-    PngRows rows(samples, Compression::standard);
-    rows.advance(height);
-    return file_of(samples, rows, {}, {});
+    const PngShape shape{width, height, 16, channels, channels};
+    PngRows rows(shape, Compression::standard);
+    rows.add(band_of(std::as_bytes(grey).data(), height));
+    return joined(beginning(shape, {}, {}), rest_of(rows));
 }
 
 }  // namespace probewarp

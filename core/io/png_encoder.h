@@ -3,62 +3,78 @@
 
 #include <tbb/task_group.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <memory>
 #include <vector>
 
 #include "io/bytes.h"
+#include "io/file.h"
 #include "io/image_file.h"
 
 namespace probewarp {
 
-/// Samples in memory: height x width x channels, row-major, in the machine's byte order.
-struct Samples {
-    const std::byte* first = nullptr;
+/// What samples there are, in memory and in the file.
+struct PngShape {
     int width = 0, height = 0;
-    int channels = 0;  ///< 1 grey, 2 grey and alpha, 4 RGBA
     int bits = 0;      ///< 8 or 16
+    int channels = 0;  ///< in memory: 1 grey, 2 grey and alpha, 4 RGBA
+    int kept = 0;      ///< in the file: as many, or 3 of RGBA
 };
 
-/// A run of whole rows, ready to be an IDAT chunk.
+/// Whole rows of samples in memory: rows x width x channels, row-major, in the machine's byte order.
+struct PngBand {
+    std::shared_ptr<const std::byte> first;  ///< there as long as any copy of this is
+    int rows = 0;
+};
+
+/// A run of whole rows, ready for the file.
 struct PngStrip {
-    std::vector<std::byte> bytes;  ///< of the zlib stream, without the Adler-32 at its end
-    std::uint32_t crc = 0;         ///< of "IDAT" and those bytes
-    std::uint32_t adler = 1;       ///< of the filtered rows
-    std::size_t filtered = 0;      ///< bytes of those
+    std::vector<std::byte> chunk;    ///< an IDAT chunk, without the Adler-32 that ends the last one's stream
+    std::uint32_t adler = 1;         ///< of the filtered rows
+    std::size_t filtered = 0;        ///< bytes of those
+    std::atomic<bool> done = false;  ///< and never changed again
 };
 
 /// A PNG's rows on their way into the file. Strips are put to work as rows come, so that the next ones may be
 /// drawn meanwhile. What comes out depends on the samples and the compression alone, not on how many threads
-/// there are or in how many portions the rows came.
+/// there are or in how many bands the rows came.
 class PngRows {
   public:
-    /// The samples stay where they are until this is gone.
-    PngRows(const Samples& samples, Compression compression);
+    PngRows(const PngShape& shape, Compression compression);
     PngRows(const PngRows&) = delete;
     PngRows& operator=(const PngRows&) = delete;
     ~PngRows();
 
-    /// The first `rows` rows stand. RGBA goes without its alpha as long as it is opaque: where that ends
-    /// late, what was done is done again with alpha.
-    void advance(int rows);
+    /// The next rows, from the top. Works on them itself where too many are under way, so that they do not
+    /// pile up. Throws as finish() does.
+    void add(const PngBand& band);
 
-    /// Waits for the strips. Requires advance(height). Throws Error and std::bad_alloc.
-    std::vector<PngStrip> finish();
+    /// The chunks of the strips that are done, behind those taken before and in their order.
+    FileParts take();
 
-    /// Of the file: as in memory, or 3 for RGBA that is opaque as far as it stands.
-    int kept_channels() const { return kept_; }
+    /// Waits for the rest: their chunks, and one that ends their stream. Requires all rows. Throws Error and
+    /// std::bad_alloc.
+    FileParts finish();
 
   private:
-    void restart(int kept);
+    struct Placed {
+        PngBand band;
+        int top = 0;
+    };
+    friend struct PngStripRows;
 
-    Samples samples_;
+    PngShape shape_;
     Compression compression_;
-    int kept_ = 0;
-    int rows_ = 0;        ///< that stand
-    int strip_rows_ = 0;  ///< of every strip but the last
-    std::size_t started_ = 0;
+    int rows_ = 0;                         ///< that came
+    int strip_rows_ = 0;                   ///< of every strip but the last
+    std::size_t started_ = 0, taken_ = 0;  ///< strips
+    std::uint32_t adler_ = 1;              ///< of those taken
+    std::deque<Placed> bands_;             ///< that strips to come need
     std::vector<PngStrip> strips_;
+    std::atomic<std::size_t> under_way_ = 0;
     tbb::task_group tasks_;
 };
 

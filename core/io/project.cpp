@@ -340,7 +340,7 @@ Document decode(std::vector<std::byte> bytes) {
                 member.name));
     Picture picture = decode_picture(std::move(image), parsed.image_file);
     picture.name = parsed.image_name;
-    parsed.document.picture = std::make_shared<const Picture>(std::move(picture));
+    parsed.document.picture = std::make_shared<Picture>(std::move(picture));
     check_size(parsed.document);
     return std::move(parsed.document);
 }
@@ -403,7 +403,7 @@ Document read_document(const std::filesystem::path& path) {
     Document document;
     Picture picture = decode_picture(std::move(bytes), path.string());
     picture.name = one_line(path.filename().string());
-    document.picture = std::make_shared<const Picture>(std::move(picture));
+    document.picture = std::make_shared<Picture>(std::move(picture));
     return document;
 }
 

@@ -68,40 +68,80 @@ View export_view(const Document& document, const Deformation& deformation, const
     return view;
 }
 
+namespace {
+
+/// Whether the deformed picture covers the centre of every pixel of the view for sure: each of its sides has
+/// stayed beyond the view's, or on it.
+bool covers(const Deformation& deformation, const View& view) {
+    const Image& picture = deformation.source.picture->image;
+    const glm::dvec2 hair = 0.49 / view.scale, least = view.origin + hair,
+                     most = view.origin + glm::dvec2(view.width, view.height) / view.scale - hair;
+    if (!deformation.moved)
+        return least.x >= 0 && least.y >= 0 && most.x <= picture.width && most.y <= picture.height;
+    const Mesh& mesh = mesh_of(deformation);
+    for (std::size_t v = 0; v < mesh.rest.size(); ++v) {
+        const glm::dvec2 rest(mesh.rest[v]), now(deformation.now[v]);
+        if ((rest.x <= 0 && now.x > least.x) || (rest.y <= 0 && now.y > least.y) ||
+            (rest.x >= picture.width && now.x < most.x) || (rest.y >= picture.height && now.y < most.y))
+            return false;
+    }
+    return true;
+}
+
+Image blank(const Image& like, int rows) {
+    Image image = like;
+    image.height = rows;
+    const std::size_t samples = std::size_t(like.width) * std::size_t(rows) * 4;
+    std::visit([samples](auto& rgba) { rgba.resize(samples); }, image.rgba);
+    return image;
+}
+
+}  // namespace
+
 ExportJob::ExportJob(Renderer& renderer, const Document& document, const Deformation& deformation,
                      const ExportSettings& settings)
     : renderer_(renderer), settings_(settings), view_(export_view(document, deformation, settings)) {
     assert(settings.samples >= 1 && settings.samples <= max_samples);
     const Image& original = document.picture->image;
-    image_.width = view_.width;
-    image_.height = view_.height;
-    image_.icc = original.icc;
-    image_.resolution = original.resolution;
-    const std::size_t samples = std::size_t(view_.width) * std::size_t(view_.height) * 4;
-    if (original.bits() == 16)
-        image_.rgba = std::vector<std::uint16_t>(samples);
-    else
-        image_.rgba = std::vector<std::uint8_t>(samples);
+    like_.width = view_.width;
+    like_.height = view_.height;
+    like_.icc = original.icc;
+    like_.resolution = original.resolution;
+    if (original.bits() == 16) like_.rgba = std::vector<std::uint16_t>();
+    may_be_transparent_ = !settings.background && !(renderer.is_opaque() && covers(deformation, view_));
     tile_ = {layer_width / settings.samples, layer_height / settings.samples};
     tiles_ = {(view_.width + tile_[0] - 1) / tile_[0], (view_.height + tile_[1] - 1) / tile_[1]};
     shrunk_ = shrunk_triangles(deformation, view_);
 }
 
-void ExportJob::step() {
-    assert(!done());
+void ExportJob::draw_tile(Image& into, int first_row) {
     const int left = next_ % tiles_[0] * tile_[0], top = next_ / tiles_[0] * tile_[1];
     View tile = view_;
     tile.origin += glm::dvec2(left, top) / view_.scale;
     tile.width = std::min(tile_[0], view_.width - left);
     tile.height = std::min(tile_[1], view_.height - top);
-    renderer_.render(image_, left, top, tile,
+    renderer_.render(into, left, top - first_row, tile,
                      {settings_.samples, settings_.background, settings_.overlay, any_within(shrunk_, tile)});
     ++next_;
 }
 
+void ExportJob::step() {
+    assert(!done());
+    if (next_ == 0) whole_ = blank(like_, like_.height);
+    draw_tile(whole_, 0);
+}
+
 Image ExportJob::take() {
     assert(done());
-    return std::move(image_);
+    return std::move(whole_);
+}
+
+Image ExportJob::next_band() {
+    assert(!done() && next_ % tiles_[0] == 0);
+    const int top = next_ / tiles_[0] * tile_[1];
+    Image band = blank(like_, std::min(tile_[1], like_.height - top));
+    for (int i = 0; i < tiles_[0]; ++i) draw_tile(band, top);
+    return band;
 }
 
 }  // namespace probewarp

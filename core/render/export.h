@@ -1,7 +1,6 @@
 // Exporting: what a deformed document looks like as a picture of its own, rendered tile by tile.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -35,24 +34,36 @@ View export_view(const Document& document, const Deformation& deformation, const
 /// until done. Tiles keep each step short and the size unlimited by textures.
 class ExportJob {
   public:
+    /// Looks at the size, depth, profile and resolution of the document's picture, not at its pixels.
     ExportJob(Renderer& renderer, const Document& document, const Deformation& deformation,
               const ExportSettings& settings);
 
     bool done() const { return next_ == tiles_[0] * tiles_[1]; }
     double progress() const { return double(next_) / (tiles_[0] * tiles_[1]); }
-    /// As far as it is rendered: rows [0, finished_rows()) are final. Stays where it is until take().
-    const Image& image() const { return image_; }
-    int finished_rows() const { return std::min(next_ / tiles_[0] * tile_[1], view_.height); }
-    /// Renders the next tile.
+    /// What is exported: its size, and the original's depth, colour profile and resolution; no pixels.
+    const Image& like() const { return like_; }
+    /// Whether any pixel may be less than opaque, as far as can be told without drawing.
+    bool may_be_transparent() const { return may_be_transparent_; }
+
+    /// Renders the next tile of the whole picture, for take().
     void step();
-    /// The exported picture, with the original's depth, colour profile and resolution. Requires done().
+    /// The exported picture. Requires done(), by step().
     Image take();
 
+    /// Renders the next rows, for those who cannot keep them all: as wide as the picture. Requires !done(),
+    /// and no step() before.
+    Image next_band();
+    /// Begins again at the top.
+    void restart() { next_ = 0; }
+
   private:
+    void draw_tile(Image& into, int first_row);
+
     Renderer& renderer_;
     ExportSettings settings_;
     View view_;
-    Image image_;
+    Image like_, whole_;
+    bool may_be_transparent_ = true;
     std::vector<Footprint> shrunk_;
     std::array<int, 2> tile_{};   ///< width and height of a tile, exported pixels
     std::array<int, 2> tiles_{};  ///< along x and y

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <limits>
 #include <type_traits>
@@ -12,26 +13,82 @@ namespace probewarp {
 
 namespace {
 
+struct Extent {
+    int width, height;
+};
+
+Extent half(Extent of) { return {std::max(1, of.width / 2), std::max(1, of.height / 2)}; }
+
+/// The alpha-weighted mean of four pixels.
 template <class Sample>
-std::vector<Sample> half_size(const std::vector<Sample>& from, int width, int height) {
-    const int half_width = std::max(1, width / 2), half_height = std::max(1, height / 2);
-    std::vector<Sample> to(std::size_t(half_width) * std::size_t(half_height) * 4);
-    for (int y = 0; y < half_height; ++y)
-        for (int x = 0; x < half_width; ++x) {
-            const int right = std::min(2 * x + 1, width - 1), below = std::min(2 * y + 1, height - 1);
-            std::uint64_t sum[4]{}, plain[3]{};
-            for (const auto& [px, py] :
-                 {std::array{2 * x, 2 * y}, {right, 2 * y}, {2 * x, below}, {right, below}}) {
-                const Sample* p = &from[(std::size_t(py) * std::size_t(width) + std::size_t(px)) * 4];
-                for (int k = 0; k < 3; ++k) sum[k] += std::uint64_t(p[k]) * p[3], plain[k] += p[k];
-                sum[3] += p[3];
-            }
-            Sample* q = &to[(std::size_t(y) * std::size_t(half_width) + std::size_t(x)) * 4];
-            for (int k = 0; k < 3; ++k)
-                q[k] = Sample(sum[3] > 0 ? (sum[k] + sum[3] / 2) / sum[3] : (plain[k] + 2) / 4);
-            q[3] = Sample((sum[3] + 2) / 4);
+std::array<Sample, 4> mean(const std::array<const Sample*, 4>& pixels) {
+    std::uint64_t weighted[3]{}, plain[3]{}, alpha = 0;
+    for (const Sample* p : pixels) {
+        for (int k = 0; k < 3; ++k) weighted[k] += std::uint64_t(p[k]) * p[3], plain[k] += p[k];
+        alpha += p[3];
+    }
+    std::array<Sample, 4> q;
+    for (std::size_t k = 0; k < 3; ++k)
+        q[k] = Sample(alpha > 0 ? (weighted[k] + alpha / 2) / alpha : (plain[k] + 2) / 4);
+    q[3] = Sample((alpha + 2) / 4);
+    return q;
+}
+
+/// Likewise, of opaque ones: the same, without the long divisions.
+template <class Sample>
+std::array<Sample, 4> opaque_mean(const std::array<const Sample*, 4>& pixels) {
+    std::array<Sample, 4> q;
+    for (std::size_t k = 0; k < 4; ++k)
+        q[k] = Sample((std::uint32_t(pixels[0][k]) + pixels[1][k] + pixels[2][k] + pixels[3][k] + 2) / 4);
+    return q;
+}
+
+/// from: `size`, to: half(size); both may begin at the same place, for no pixel is written before those that
+/// it and the ones before it are made of have been read.
+template <class Sample>
+void halve(const Sample* from, Extent size, Sample* to) {
+    const Extent smaller = half(size);
+    const std::size_t row = std::size_t(size.width) * 4;
+    for (int y = 0; y < smaller.height; ++y) {
+        const Sample* above = from + std::size_t(2 * y) * row;
+        const Sample* below = from + std::size_t(std::min(2 * y + 1, size.height - 1)) * row;
+        for (int x = 0; x < smaller.width; ++x, to += 4) {
+            const std::size_t left = std::size_t(2 * x) * 4,
+                              right = std::size_t(std::min(2 * x + 1, size.width - 1)) * 4;
+            const std::array<const Sample*, 4> four{above + left, above + right, below + left, below + right};
+            const auto alpha = four[0][3] & four[1][3] & four[2][3] & four[3][3];
+            const auto q = alpha == std::numeric_limits<Sample>::max() ? opaque_mean(four) : mean(four);
+            std::copy(q.begin(), q.end(), to);
         }
-    return to;
+    }
+}
+
+/// Half the size, in the same memory.
+void halve(Image& image) {
+    const Extent size{image.width, image.height};
+    image.width = half(size).width;
+    image.height = half(size).height;
+    std::visit(
+        [&](auto& samples) {
+            halve(samples.data(), size, samples.data());
+            samples.resize(std::size_t(image.width) * std::size_t(image.height) * 4);
+        },
+        image.rgba);
+}
+
+Image half_size(const Image& image) {
+    Image next;
+    next.width = half({image.width, image.height}).width;
+    next.height = half({image.width, image.height}).height;
+    std::visit(
+        [&](const auto& from) {
+            auto to =
+                std::remove_cvref_t<decltype(from)>(std::size_t(next.width) * std::size_t(next.height) * 4);
+            halve(from.data(), {image.width, image.height}, to.data());
+            next.rgba = std::move(to);
+        },
+        image.rgba);
+    return next;
 }
 
 bool is_opaque(const Image& image, int first_row, int rows) {
@@ -49,19 +106,10 @@ bool is_opaque(const Image& image, int first_row, int rows) {
 
 }  // namespace
 
-std::vector<Image> smaller_levels(const Image& image, int most) {
+std::vector<Image> smaller_levels(const Image& image) {
     std::vector<Image> levels;
-    levels.reserve(32);  // more than halvings there are: `from` stays where it is
-    const Image* from = &image;
-    while (int(levels.size()) < most && (from->width > 1 || from->height > 1)) {
-        Image next;
-        next.width = std::max(1, from->width / 2);
-        next.height = std::max(1, from->height / 2);
-        std::visit([&](const auto& samples) { next.rgba = half_size(samples, from->width, from->height); },
-                   from->rgba);
-        levels.push_back(std::move(next));
-        from = &levels.back();
-    }
+    for (Extent size{image.width, image.height}; size.width > 1 || size.height > 1; size = half(size))
+        levels.push_back(half_size(levels.empty() ? image : levels.back()));
     return levels;
 }
 
@@ -73,37 +121,59 @@ void check_texture_size(const Image& image) {
                                 image.width, image.height, largest, largest));
 }
 
-PictureUpload::PictureUpload(const Image& image, std::span<const Image> levels)
-    : image_(image), levels_(levels) {
+namespace {
+
+/// Room for an image of that size and its first mipmaps.
+PictureTexture picture_room(const Image& image, int last_level) {
     check_texture_size(image);
-    texture_ = {make_texture(), image.width, image.height, int(levels.size()), true};
-    glBindTexture(GL_TEXTURE_2D, texture_.texture.name());
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, texture_.last_level);
+    PictureTexture room{make_texture(), image.width, image.height, last_level, true};
+    const GLenum format = image.bits() == 16 ? GL_RGBA16 : GL_RGBA8;
+    glBindTexture(GL_TEXTURE_2D, room.texture.name());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, last_level);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    for (int level = 0; level <= texture_.last_level; ++level) {
-        const Image& from = level == 0 ? image : levels[std::size_t(level) - 1];
-        glTexImage2D(GL_TEXTURE_2D, level, image.bits() == 16 ? GL_RGBA16 : GL_RGBA8, from.width, from.height,
-                     0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    // Asked for one level after the other, Mesa makes room for all that there might be.
+    if (GLAD_GL_ARB_texture_storage) {
+        glTexStorage2D(GL_TEXTURE_2D, last_level + 1, format, image.width, image.height);
+    } else {
+        Extent size{image.width, image.height};
+        for (int level = 0; level <= last_level; ++level, size = half(size))
+            glTexImage2D(GL_TEXTURE_2D, level, GLint(format), size.width, size.height, 0, GL_RGBA,
+                         GL_UNSIGNED_BYTE, nullptr);
     }
     check_gl("making room for the picture");
+    return room;
 }
+
+/// About a million pixels.
+int rows_at_once(const Image& level, int first_row) {
+    return std::clamp((1 << 20) / level.width, 1, level.height - first_row);
+}
+
+void upload_rows(PictureTexture& texture, int level, const Image& from, int first_row, int rows) {
+    const bool deep = from.bits() == 16;
+    const std::size_t row_bytes = std::size_t(from.width) * (deep ? 8 : 4);
+    glBindTexture(GL_TEXTURE_2D, texture.texture.name());
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    glTexSubImage2D(GL_TEXTURE_2D, level, 0, first_row, from.width, rows, GL_RGBA,
+                    deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
+                    pixel_bytes(from).data() + std::size_t(first_row) * row_bytes);
+    check_gl("uploading the picture");
+    if (level == 0) texture.opaque = texture.opaque && is_opaque(from, first_row, rows);
+}
+
+}  // namespace
+
+PictureUpload::PictureUpload(const Image& image, std::span<const Image> levels)
+    : image_(image), levels_(levels), texture_(picture_room(image, int(levels.size()))) {}
 
 void PictureUpload::step() {
     assert(!done());
     const Image& from = level_ == 0 ? image_ : levels_[std::size_t(level_) - 1];
-    const int rows = std::clamp((1 << 20) / from.width, 1, from.height - row_);
-    const bool deep = from.bits() == 16;
-    const std::size_t row_bytes = std::size_t(from.width) * (deep ? 8 : 4);
-    glBindTexture(GL_TEXTURE_2D, texture_.texture.name());
-    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-    glTexSubImage2D(GL_TEXTURE_2D, level_, 0, row_, from.width, rows, GL_RGBA,
-                    deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
-                    pixel_bytes(from).data() + std::size_t(row_) * row_bytes);
-    check_gl("uploading the picture");
-    if (level_ == 0) texture_.opaque = texture_.opaque && is_opaque(from, row_, rows);
+    const int rows = rows_at_once(from, row_);
+    upload_rows(texture_, level_, from, row_, rows);
     row_ += rows;
     if (row_ == from.height) row_ = 0, ++level_;
 }
@@ -113,11 +183,23 @@ PictureTexture PictureUpload::take() {
     return std::move(texture_);
 }
 
-PictureTexture upload_picture(const Image& image, int most_levels) {
-    const std::vector<Image> levels = smaller_levels(image, most_levels);
+PictureTexture upload_picture(const Image& image) {
+    const std::vector<Image> levels = smaller_levels(image);
     PictureUpload upload(image, levels);
     while (!upload.done()) upload.step();
     return upload.take();
+}
+
+PictureTexture upload_picture(Image image, int most_levels) {
+    const int last_level =
+        std::min(most_levels, int(std::bit_width(unsigned(std::max(image.width, image.height)))) - 1);
+    PictureTexture texture = picture_room(image, last_level);
+    for (int level = 0; level <= last_level; ++level) {
+        if (level > 0) halve(image);
+        for (int row = 0; row < image.height; row += rows_at_once(image, row))
+            upload_rows(texture, level, image, row, rows_at_once(image, row));
+    }
+    return texture;
 }
 
 GlTexture preview_texture(std::span<const Image> levels) {

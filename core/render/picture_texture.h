@@ -9,9 +9,8 @@
 
 namespace probewarp {
 
-/// The picture's mipmaps from half its size down to one pixel, but no more than `most`: each pixel the
-/// alpha-weighted mean of four.
-std::vector<Image> smaller_levels(const Image& image, int most = 32);
+/// The picture's mipmaps from half its size down to one pixel: each pixel the alpha-weighted mean of four.
+std::vector<Image> smaller_levels(const Image& image);
 
 /// A picture as the graphics driver holds it.
 struct PictureTexture {
@@ -43,8 +42,10 @@ class PictureUpload {
     int level_ = 0, row_ = 0;
 };
 
-/// All of it at once, with at most so many mipmaps.
-PictureTexture upload_picture(const Image& image, int most_levels = 32);
+/// All of it at once.
+PictureTexture upload_picture(const Image& image);
+/// Likewise, with at most so many mipmaps, which are made in the image's own memory.
+PictureTexture upload_picture(Image image, int most_levels);
 
 /// A texture for the window's toolkit to draw, smoothly scaled. levels: a picture and its mipmaps, down to
 /// one pixel. The driver could make these, but a software rasteriser would compile a shader to do so.

@@ -68,6 +68,8 @@ class Renderer {
     Renderer();
 
     void set_picture(PictureTexture picture);
+    /// Whether the picture is, everywhere.
+    bool is_opaque() const { return picture_.opaque; }
     void set_mesh(const Mesh& mesh);
     /// The mesh as the processor deformed it. now: #vertices of the mesh, image pixels. Where it has not
     /// `moved`, all of the picture is drawn as it is, with the cells that the mesh leaves out.

@@ -193,7 +193,7 @@ TEST(Footprints, MoreLevelsThanWantedChangeNothing) {
             const int wanted = wanted_levels(shrunk_triangles(scene.deformation, view));
             Image all = scene.blank(view), few = all;
             scene.renderer.render(all, 0, 0, view, {});
-            scene.renderer.set_picture(upload_picture(document.picture->image, wanted));
+            scene.renderer.set_picture(upload_picture(Image(document.picture->image), wanted));
             scene.renderer.render(few, 0, 0, view, {});
             EXPECT_EQ(few.rgba, all.rgba) << scale;
             if (!moved && scale == 1.0) {

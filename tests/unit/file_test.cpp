@@ -131,6 +131,28 @@ TEST_F(FileTest, RefusesToWriteOverWhatIsNoFile) {
     EXPECT_TRUE(names_in(folder.path).empty());
 }
 
+TEST_F(FileTest, InPortionsNothingIsSeenBeforeTheEnd) {
+    put("old");
+    {
+        FileWriter writer(path);
+        writer.write(bytes_of("one "));
+        writer.write(bytes_of("two"));
+        EXPECT_EQ(got(), "old");
+    }
+    EXPECT_EQ(got(), "old") << "given up";
+    EXPECT_EQ(names_in(folder.path), std::vector<std::string>{"file"});
+    FileWriter writer(path);
+    writer.write(bytes_of("one long beginning"));
+    writer.restart();
+    writer.write(bytes_of("two, "));
+    writer.write(bytes_of("three"));
+    EXPECT_EQ(got(), "old");
+    writer.finish();
+    EXPECT_EQ(got(), "two, three");
+    EXPECT_EQ(names_in(folder.path), std::vector<std::string>{"file"});
+    EXPECT_THAT(error_of([&] { FileWriter(folder.path / "no" / "file"); }), HasSubstr("cannot save"));
+}
+
 TEST_F(FileTest, LeavesAReadOnlyFileAlone) {
     if (::geteuid() == 0) GTEST_SKIP() << "root may write any file";
     put("old");

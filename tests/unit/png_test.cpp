@@ -11,7 +11,7 @@
 #include "image_checks.h"
 #include "io/deflate_strip.h"
 #include "io/formats.h"
-#include "io/png_encoder.h"
+#include "io/image_encoding.h"
 #include "io/png_filter.h"
 
 namespace probewarp {
@@ -133,34 +133,89 @@ TEST(Png, TheStripsAreOneZlibStreamForOtherReadersToo) {
     }
 }
 
-TEST(Png, RowsMayComeInAnyPortions) {
-    Image image = picture_of<std::uint8_t>(Kind::gradient, 1500, 1101, true);
-    const auto expect_the_same = [&] {
-        const Samples samples{pixel_bytes(image).data(), image.width, image.height, 4, 8};
-        for (const auto& row : compressions()) {
-            PngRows at_once(samples, row.compression), bit_by_bit(samples, row.compression);
-            at_once.advance(image.height);
-            for (int rows = 1; rows < image.height; rows += 97) bit_by_bit.advance(rows);
-            bit_by_bit.advance(image.height);
-            const auto expected = at_once.finish(), strips = bit_by_bit.finish();
-            EXPECT_EQ(bit_by_bit.kept_channels(), at_once.kept_channels());
-            ASSERT_EQ(strips.size(), expected.size());
-            for (std::size_t i = 0; i < strips.size(); ++i) {
-                EXPECT_EQ(strips[i].bytes, expected[i].bytes);
-                EXPECT_EQ(strips[i].adler, expected[i].adler);
-            }
-        }
+/// The file's bytes, out of portions of `rows` rows each, taken as they are done.
+File in_portions(const char* format, const Image& image, const EncodeOptions& options, int rows) {
+    Image like = image;
+    std::visit([](auto& rgba) { rgba.clear(); }, like.rgba);
+    ImageEncoding encoding(*find_image_format(format), like, options, has_alpha(image));
+    File all;
+    const auto append = [&all](const FileParts& parts) {
+        for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
     };
-    expect_the_same();
-    std::get<0>(image.rgba)[(1000 * 1500 + 7) * 4 + 3] =
-        254;  // alpha where most strips are under way without
-    expect_the_same();
+    for (int top = 0; top < image.height; top += rows) {
+        Image band = like;
+        band.height = std::min(rows, image.height - top);
+        std::visit(
+            [&](const auto& rgba) {
+                const auto first = rgba.begin() + std::ptrdiff_t(top) * image.width * 4;
+                band.rgba = std::remove_cvref_t<decltype(rgba)>(
+                    first, first + std::ptrdiff_t(band.height) * image.width * 4);
+            },
+            image.rgba);
+        encoding.add(std::move(band));
+        append(encoding.take());
+    }
+    EXPECT_TRUE(encoding.fits());
+    append(encoding.finish());
+    return all;
+}
+
+TEST(Png, RowsMayComeInAnyPortions) {
+    Image picture = picture_of<std::uint8_t>(Kind::gradient, 1500, 1101, true);
+    picture.icc = std::vector<std::byte>(200, std::byte{7});
+    picture.resolution = Resolution{4000, 5000};
+    for (const bool opaque : {true, false}) {
+        if (!opaque) std::get<0>(picture.rgba)[(1000 * 1500 + 7) * 4 + 3] = 254;
+        for (const auto& row : compressions()) {
+            const EncodeOptions options{.compression = row.compression};
+            const File whole = encode(picture, "png", options);
+            for (const int rows : {1, 97, 256, 1100, 1101})
+                EXPECT_EQ(in_portions("png", picture, options, rows), whole) << rows << ", " << row.name;
+        }
+    }
+    const Image deep = picture_of<std::uint16_t>(Kind::noise, 300, 700, false);
+    EXPECT_EQ(in_portions("png", deep, {}, 60), encode(deep, "png"));
+}
+
+TEST(Png, OtherFormatsRowsMayComeInPortionsToo) {
+    for (const char* format : {"jpeg", "bmp", "tga"}) {
+        const Image picture = picture_of<std::uint8_t>(Kind::gradient, 90, 61, false);
+        const Image deep = picture_of<std::uint16_t>(Kind::gradient, 90, 61, true);
+        for (const int rows : {1, 8, 60, 61}) {
+            EXPECT_EQ(in_portions(format, picture, {}, rows), encode(picture, format)) << format;
+            EXPECT_EQ(in_portions(format, deep, {}, rows), encode(deep, format)) << format;
+        }
+    }
+}
+
+TEST(Png, AWrongGuessAtTransparencyIsFound) {
+    const ImageFormat& png = *find_image_format("png");
+    const Image opaque = picture_of<std::uint8_t>(Kind::noise, 40, 30, true);
+    Image clear = opaque;
+    std::get<0>(clear.rgba).back() = 254;
+    const auto fits = [&](const Image& image, bool transparent) {
+        ImageEncoding encoding(png, image, {}, transparent);
+        EXPECT_TRUE(encoding.fits()) << "nothing came yet";
+        encoding.add(image);
+        return encoding.fits();
+    };
+    EXPECT_TRUE(fits(opaque, false));
+    EXPECT_FALSE(fits(opaque, true));
+    EXPECT_TRUE(fits(clear, true));
+    EXPECT_FALSE(fits(clear, false));
+    ImageEncoding jpeg(*find_image_format("jpeg"), opaque, {}, true);
+    jpeg.add(opaque);
+    EXPECT_TRUE(jpeg.fits()) << "JPEG has no alpha to leave out";
 }
 
 TEST(Png, RowsThatNeverCameAreForgotten) {
-    const Image image = picture_of<std::uint8_t>(Kind::noise, 1500, 1101, true);
-    PngRows rows({pixel_bytes(image).data(), image.width, image.height, 4, 8}, Compression::standard);
-    rows.advance(1000);
+    const Image image = picture_of<std::uint8_t>(Kind::noise, 1500, 1000, true);
+    Image taller = image;
+    taller.height = 1101;
+    for (const char* format : {"png", "jpeg"}) {
+        ImageEncoding encoding(*find_image_format(format), taller, {}, false);
+        encoding.add(image);
+    }
 }
 
 TEST(Png, SmallIsSmallerThanTheDefaultAndThatThanFast) {
