@@ -4,6 +4,7 @@ Run: render_command_test.py PROGRAM"""
 
 import os
 import pathlib
+import random
 import re
 import shutil
 import subprocess
@@ -149,6 +150,37 @@ class Render(unittest.TestCase):
         self.assertLess(sizes[2], min(sizes[:2]))
         self.run_well("render", os.path.join(IMAGES, "octopus.png"), "-o", self.path("plain.png"), "--size", "300x250")
         self.assertEqual(contents(self.path("plain.png")), contents(self.path("default.png")))
+
+    def test_alpha_that_leaves_the_frame_leaves_the_file(self):
+        # The clear column on the left is pulled out of the frame: that nothing clear is left shows at the end, when much
+        # is written already. The picture takes several strips and bands.
+        width, height = 700, 900
+        samples = [(x * 5 + y * y // 7 + c * 40) & 255 if c < 3 else 0 if x == 0 else 255
+                   for y in range(height) for x in range(width) for c in range(4)]
+        picture = write_png(self.path("wide.png"), width, height, samples, 8, 6)
+        pulled = "--probe", "150,450:90,450", "--probe", "550,450:610,450"
+        for output in self.path("out.png"), "-":
+            done = subprocess.run([PROGRAM, "render", picture, *pulled, "-o", output, "--format", "png"],
+                                  capture_output=True, timeout=120)
+            self.assertEqual((done.returncode, done.stderr), (0, b""))
+            file = contents(output) if output != "-" else done.stdout
+            self.assertEqual(file[25], 2, "RGB: there is nothing to see through")
+        self.assertEqual(file, contents(self.path("out.png")))
+        filled = self.path("filled.png")
+        self.run_well("render", picture, *pulled, "-o", filled, "--background", "#ff00ff")
+        self.assertEqual(contents(filled), file)
+
+    def test_timings_are_of_their_stages(self):
+        picture = write_png(self.path("noise.png"), 900, 700, random.Random(3).randbytes(900 * 700 * 4), 8, 6)
+        code, _, err = self.run_program("render", picture, "--probe", "20,15:28,18,30", "--mesh", "200", "--timings",
+                                        "-o", self.path("x.png"))
+        self.assertEqual(code, 0, err)
+        told = {name: float(value) for name, value in re.findall(r"^timings: ([a-z ]+) (\d+\.\d{3}) s$", err, re.M)}
+        # Each takes milliseconds at least: 630000 pixels of noise, 31000 vertices.
+        for stage in "decode", "weights", "draw":
+            self.assertGreater(told[stage], 0, err)
+        # Half a thousandth each may have been rounded up.
+        self.assertLess(told["decode"] + told["weights"] + told["draw"], told["in all"] + 0.002, err)
 
     def test_timings_are_told(self):
         for images in ((), ("--image", *self.pictures)):
