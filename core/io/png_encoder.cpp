@@ -128,7 +128,7 @@ std::vector<std::byte> deflated_strip(Bytes raw, const Effort& effort, bool last
         effort.level == 0 ? deflate_quickly(raw, last) : deflate_whole(raw, effort.level);
     const bool again = effort.drawing_level > effort.level && out.size() <= raw.size() / 6;
     if (again) out = deflate_whole(raw, effort.drawing_level);
-    if ((again || effort.level > 0) && !last) open_end(out, raw.size());
+    if ((again || effort.level > 0) && !last) open_end(out);
     return out;
 }
 

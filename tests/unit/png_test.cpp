@@ -388,7 +388,7 @@ TEST(DeflateStrip, StripsMakeOneStream) {
                 const auto raw = strip_bytes(random, 1 + random() % (run % 10 == 0 ? 400000 : 3000), values);
                 auto strip = deflate_whole(raw, level);
                 ++ends[std::size_t(std::bit_width(std::to_integer<unsigned>(strip.back()))) % 8];
-                if (i < 3) open_end(strip, raw.size());
+                if (i < 3) open_end(strip);
                 stream.insert(stream.end(), strip.begin(), strip.end());
                 all.insert(all.end(), raw.begin(), raw.end());
             }
@@ -406,7 +406,7 @@ TEST(DeflateStrip, QuickStripsMakeOneStreamWithTheOthers) {
             const auto raw = strip_bytes(random, 1 + random() % (run % 10 == 0 ? 2000000 : 3000), values);
             const bool last = i == 3, quickly = random() % 4 != 0;
             auto strip = quickly ? deflate_quickly(raw, last) : deflate_whole(raw, 1);
-            if (!quickly && !last) open_end(strip, raw.size());
+            if (!quickly && !last) open_end(strip);
             stream.insert(stream.end(), strip.begin(), strip.end());
             all.insert(all.end(), raw.begin(), raw.end());
         }
