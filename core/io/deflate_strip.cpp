@@ -5,6 +5,7 @@
 
 #include <isa-l/igzip_lib.h>
 #include <libdeflate.h>
+#include <zlib.h>
 
 #include <cassert>
 #include <memory>
@@ -74,6 +75,23 @@ std::vector<std::byte> deflate_quickly(Bytes raw, bool whole) {
     stream.avail_out = std::uint32_t(out.size());
     if (isal_deflate(&stream) != COMP_OK || stream.avail_in > 0 || stream.avail_out == 0)
         throw Error("cannot be written as PNG: ISA-L cannot deflate it");
+    return copy(out.first(stream.total_out));
+}
+
+std::vector<std::byte> deflate_by_zlib(Bytes raw, bool whole) {
+    constexpr int level = 9, memory = 9;
+    z_stream stream{};
+    if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, memory, Z_DEFAULT_STRATEGY) != Z_OK)
+        throw std::bad_alloc();
+    const auto out = room(deflateBound(&stream, uLong(raw.size())) + 16);  // 16: for the flush
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(raw.data()));
+    stream.avail_in = uInt(raw.size());
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = uInt(out.size());
+    const int result = deflate(&stream, whole ? Z_FINISH : Z_SYNC_FLUSH);
+    const bool good = result == (whole ? Z_STREAM_END : Z_OK) && stream.avail_in == 0 && stream.avail_out > 0;
+    deflateEnd(&stream);
+    if (!good) throw Error("cannot be written as PNG: zlib cannot deflate it");
     return copy(out.first(stream.total_out));
 }
 

@@ -1,6 +1,7 @@
 #include "io/png_encoder.h"
 
 #include <libdeflate.h>
+#include <tbb/info.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -26,7 +27,7 @@ namespace {
 struct Effort {
     std::array<FilterSet, 3>
         filters;                   ///< each in turn for the whole strip, the smallest kept; 0: none further
-    int level;                     ///< 0: ISA-L
+    int level;                     ///< 0: ISA-L; 12: zlib besides, where the strip packs to a twentieth
     int drawing_level;             ///< where the strip packs to a sixth or less, as photographs never do
     std::size_t strip_bytes;       ///< about
     std::array<unsigned, 2> zlib;  ///< the stream's two first bytes, which hint at the level
@@ -42,7 +43,7 @@ constexpr Effort effort_of(Compression compression) {
         case Compression::fast:
             return {{all_filters}, 0, 1, mebibyte, {0x78, 0x01}};
         case Compression::small:
-            return {{all_filters, no_filter, up_filter}, 12, 12, 4 * mebibyte, {0x78, 0xDA}};
+            return {{all_filters, no_filter, up_filter}, 12, 12, 8 * mebibyte, {0x78, 0xDA}};
         default:
             return {{all_filters}, 1, 4, mebibyte, {0x78, 0x9C}};
     }
@@ -129,6 +130,10 @@ std::vector<std::byte> deflated_strip(Bytes raw, const Effort& effort, bool last
     const bool again = effort.drawing_level > effort.level && out.size() <= raw.size() / 6;
     if (again) out = deflate_whole(raw, effort.drawing_level);
     if ((again || effort.level > 0) && !last) open_end(out);
+    if (effort.level == 12 && out.size() <= raw.size() / 20) {
+        std::vector<std::byte> other = deflate_by_zlib(raw, last);
+        if (other.size() < out.size()) return other;
+    }
     return out;
 }
 
@@ -202,7 +207,8 @@ PngRows::~PngRows() {
 }
 
 void PngRows::add(const PngBand& band) {
-    const std::size_t most_under_way = (std::size_t{8} << 20) / effort_of(compression_).strip_bytes;
+    const std::size_t most_under_way = std::max((std::size_t{8} << 20) / effort_of(compression_).strip_bytes,
+                                                std::size_t(tbb::info::default_concurrency()));
     assert(rows_ + band.rows <= shape_.height);
     bands_.push_back({band, rows_});
     rows_ += band.rows;
@@ -227,11 +233,8 @@ void PngRows::add(const PngBand& band) {
 
 FileParts PngRows::take() {
     FileParts chunks;
-    for (; taken_ < strips_.size() && strips_[taken_].done; ++taken_) {
-        PngStrip& strip = strips_[taken_];
-        chunks.push_back(std::move(strip.chunk));
-        adler_ = std::uint32_t(adler32_combine(adler_, strip.adler, z_off_t(strip.filtered)));
-    }
+    for (; taken_ + 1 < strips_.size() && strips_[taken_].done; ++taken_)
+        chunks.push_back(chunk_of(strips_[taken_]));
     return chunks;
 }
 
@@ -239,10 +242,16 @@ FileParts PngRows::finish() {
     assert(rows_ == shape_.height);
     tasks_.wait();
     FileParts chunks = take();
-    std::vector<std::byte> sum;
-    put_be32(sum, adler_);  // RFC 1950, section 2.2: behind the deflated data
-    put_chunk(chunks.emplace_back(), "IDAT", sum);
+    const std::vector<std::byte> last = chunk_of(strips_.back());
+    std::vector<std::byte> data(last.begin() + 8, last.end() - 4);  // without length, type and CRC
+    put_be32(data, adler_);                                         // RFC 1950, section 2.2: behind all data
+    put_chunk(chunks.emplace_back(), "IDAT", data);
     return chunks;
+}
+
+std::vector<std::byte> PngRows::chunk_of(PngStrip& strip) {
+    adler_ = std::uint32_t(adler32_combine(adler_, strip.adler, z_off_t(strip.filtered)));
+    return std::move(strip.chunk);
 }
 
 // ---- the file ----

@@ -52,14 +52,16 @@ class PngRows {
     /// pile up. Throws as finish() does.
     void add(const PngBand& band);
 
-    /// The chunks of the strips that are done, behind those taken before and in their order.
+    /// The chunks of the strips that are done, behind those taken before and in their order; never the last.
     FileParts take();
 
-    /// Waits for the rest: their chunks, and one that ends their stream. Requires all rows. Throws Error and
-    /// std::bad_alloc.
+    /// Waits for the rest: their chunks, the last of which ends the stream. Requires all rows. Throws Error
+    /// and std::bad_alloc.
     FileParts finish();
 
   private:
+    std::vector<std::byte> chunk_of(PngStrip& strip);
+
     struct Placed {
         PngBand band;
         int top = 0;
