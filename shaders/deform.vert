@@ -12,6 +12,7 @@ uniform vec2 centre;  // image pixels
 out vec2 now;  // image pixels
 
 const float cancelled_share = 1e-6;
+const float smallest = 1.17549435e-38;  // of what a float holds with all its digits
 
 void main() {
     vec4 s = vec4(0.0), heaviest = vec4(0.0);
@@ -27,7 +28,7 @@ void main() {
         }
     }
     float least = cancelled_share * total;
-    if (!(dot(s.xy, s.xy) >= least * least)) s = heaviest;
+    if (!(dot(s.xy, s.xy) >= max(least * least, smallest))) s = heaviest;
     vec2 v = rest - centre;
     vec2 turned = s.zw + s.y * vec2(-v.y, v.x);
     vec2 way = 2.0 / dot(s.xy, s.xy) * vec2(dot(s.xy * vec2(1.0, -1.0), turned), dot(s.xy, turned.yx));

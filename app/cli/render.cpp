@@ -73,7 +73,7 @@ Document posed_on(Document document, PicturePtr picture, const RenderOptions& o)
 }
 
 void check_deform(const RenderOptions& o, const Document& document) {
-    if (o.deform == "shader" && document.blend != "dlb")
+    if (o.deform == "shader" && !find_blend_method(document.blend)->summed)
         throw UsageError(fmt::format(
             "--deform shader: the shader blends by dlb only, this is {}; expected --deform processor",
             document.blend));

@@ -45,7 +45,7 @@ bool is_shaded(const App& app) {
     const Editor& editor = app.editor;
     const bool drags = editor.gesture && (editor.gesture->kind == Gesture::Kind::move ||
                                           editor.gesture->kind == Gesture::Kind::turn);
-    if (!drags || editor.document.blend != "dlb" || editor.comparison) return false;
+    if (!drags || !find_blend_method(editor.document.blend)->summed || editor.comparison) return false;
     return is_bound(editor.deformation.binding.get(), editor.document) &&
            put_to_rest(editor.deformation.source) == put_to_rest(editor.document) &&
            deform_choice(app).by == DeformBy::shader;

@@ -17,7 +17,7 @@ struct BiharmonicCache {
     Eigen::VectorXi order;  ///< #vertices: each one's row
     Eigen::VectorXd areas;  ///< M, lumped
     SparseMatrix energy;    ///< L M^-1 L
-    Panels panels;
+    PanelCholesky pattern;  ///< of every rung's factor; nothing is factored in it
     struct Rung {
         double rho;
         std::vector<float> factor;  ///< of energy + rho M
@@ -62,7 +62,7 @@ BiharmonicCache& prepared(WeightCache& cache) {
         made->order = order.indices();
         made->areas = order * areas;
         made->energy = energy.twistedBy(order);
-        made->panels = panels_of(made->energy);
+        made->pattern = prepare_cholesky(made->energy);
         cache.biharmonic = std::move(made);
     }
     return *cache.biharmonic;
@@ -84,11 +84,10 @@ void factor_rungs(const WeightInput& input, BiharmonicCache& cache, std::size_t 
     for (const Rounds& rung : ladder) rungs.push_back({std::min(rung.rho * unit, stiffest), {}});
     const auto same = [](const auto& a, const auto& b) { return a.rho == b.rho; };
     if (std::equal(rungs.begin(), rungs.end(), cache.rungs.begin(), cache.rungs.end(), same)) return;
-    const PanelCholesky prepared = prepare_cholesky(cache.energy);
     oneapi::tbb::parallel_for(std::size_t{0}, rungs.size(), [&](std::size_t i) {
         SparseMatrix matrix = cache.energy;
         matrix.diagonal() += rungs[i].rho * cache.areas;
-        PanelCholesky cholesky = prepared;
+        PanelCholesky cholesky = cache.pattern;
         update_cholesky(cholesky, matrix, [&] { check_given_up(input); });
         rungs[i].factor.assign(cholesky.values.begin(), cholesky.values.end());
     });
@@ -102,7 +101,7 @@ std::vector<std::vector<float>> held_factors(const WeightInput& input, const Bih
     std::vector<std::vector<float>> factors(cache.rungs.size());
     oneapi::tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t i) {
         factors[i] = cache.rungs[i].factor;
-        DiagonalRaiser raiser(cache.panels);
+        DiagonalRaiser raiser(cache.pattern.panels);
         for (const Place& place : places) {
             check_given_up(input);
             std::array<Raise, 3> raises;
@@ -166,7 +165,7 @@ Sides<float> shares_of(const WeightInput& input, const BiharmonicCache& cache,
         state = bounded + float(rho / next) * (state - bounded);
         rho = next;
         const Eigen::ArrayXf rho_areas = (rho * cache.areas).cast<float>();
-        search(input, cache.panels, factors[rung], rho_areas, pulls, ladder[rung].rounds, state);
+        search(input, cache.pattern.panels, factors[rung], rho_areas, pulls, ladder[rung].rounds, state);
     }
     return state.max(0.0f).min(1.0f);
 }

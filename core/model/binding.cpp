@@ -62,7 +62,7 @@ std::shared_ptr<const Binding> make_binding(const Document& document,
     binding->kept = keep_cells ? before->kept : visible_cells(document.picture->image, document.mesh);
     binding->mesh = keep_mesh ? before->mesh : mesh_for(document, binding->kept);
     binding->islands = keep_mesh ? before->islands : islands_of(*binding->mesh);
-    if (before) binding->cache = before->cache;
+    if (keep_cells) binding->cache = before->cache;
     if (document.probes.empty()) return binding;
 
     const WeightScheme& scheme = *find_weight_scheme(document.weights.scheme);

@@ -3,7 +3,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "math/planar_blend.h"
@@ -22,15 +21,14 @@ using PlainBlend = Similarity<double> (*)(std::span<const double> weights,
                                           std::span<const Motion<double>> motions);
 
 /// What moves farther than this is not known: image pixels. Positions are floats.
-constexpr double far = 1e30;
+constexpr double farthest = 1e30;
 /// Where what is near to having no answer begins: four times where there is none, so that rounding has room.
 constexpr double unsure_share = 4 * cancelled_share<double>;
 
 /// Moves vertices by the plain blend, one by one; those that the mesh does not have are left out. Returns how
-/// many are cancelled. rest, now: begin at the run
+/// many are cancelled. rest, now: begin at the run; weights: #probes, to be written
 std::size_t move_plainly(const WeightTiles& tiles, const Pose& pose, PlainBlend blend, VertexRun run,
-                         const glm::vec2* rest, glm::vec2* now) {
-    std::vector<double> weights(tiles.probes);
+                         const glm::vec2* rest, glm::vec2* now, std::span<double> weights) {
     std::size_t cancelled = 0;
     for (std::size_t k = 0; k < run.count && run.first + k < tiles.vertices; ++k) {
         const float* w = column(tiles, run.first + k);
@@ -173,19 +171,20 @@ struct Spiral {
 
 struct LogLinear {
     static constexpr PlainBlend plain = &planar_log_linear;
-    Rows<3> rows;
+    Rows<4> rows;
 
     explicit LogLinear(const Pose& pose) {
-        constexpr double none = std::numeric_limits<double>::quiet_NaN();
         for (const auto& m : pose.motions) {
-            const auto l = has_no_log(m) ? std::complex<double>(none, none) : log_shift(m);
-            rows.push_back({m.angle, l.real(), l.imag()});
+            const bool none = has_no_log(m);
+            const auto l = none ? 0.0 : log_shift(m);
+            rows.push_back({m.angle, l.real(), l.imag(), none ? 1.0 : 0.0});
         }
     }
     HWY_INLINE Map operator()(const WeightTiles& tiles, const Pose&, std::size_t v) const {
         const Mean mean(tiles, rows, v);
         const Complex half = HalfTurn(mean.at[0]);
-        return {TurnLessOne(half), LeftJacobian(mean.at[0], half) * mean.ComplexAt(1)};
+        const Complex shift = LeftJacobian(mean.at[0], half) * mean.ComplexAt(1);
+        return {TurnLessOne(half), Where(hn::Zero(Tag()), mean.at[3], shift)};
     }
 };
 
@@ -316,6 +315,7 @@ struct MoveOne {
     const WeightTiles& tiles;
     const Pose& pose;
     const Blend& blend;
+    std::span<double> room;  ///< #probes
 
     HWY_INLINE std::size_t operator()(std::size_t v, const glm::vec2* rest, glm::vec2* now) const {
         const Floats floats;
@@ -326,9 +326,9 @@ struct MoveOne {
         const auto from_y = hn::Sub(y, hn::Set(floats, pose.centre.y));
         const Complex from{hn::PromoteTo(Tag(), from_x), hn::PromoteTo(Tag(), from_y)};
         const Complex way = map.less_one * from + map.shift;
-        const auto known = hn::Lt(hn::Add(hn::Abs(way.re), hn::Abs(way.im)), Number(far));
+        const auto known = hn::Lt(hn::Add(hn::Abs(way.re), hn::Abs(way.im)), Number(farthest));
         if (HWY_UNLIKELY(!hn::AllTrue(Tag(), known)))
-            return move_plainly(tiles, pose, Blend::plain, {v, hn::Lanes(Tag())}, rest, now);
+            return move_plainly(tiles, pose, Blend::plain, {v, hn::Lanes(Tag())}, rest, now, room);
         hn::StoreInterleaved2(hn::Add(x, hn::DemoteTo(floats, way.re)),
                               hn::Add(y, hn::DemoteTo(floats, way.im)), floats, &now->x);
         return 0;
@@ -339,7 +339,8 @@ template <class Blend>
 std::size_t Run(const WeightTiles& tiles, const Pose& pose, VertexRun run, const glm::vec2* rest,
                 glm::vec2* now) {
     const Blend blend(pose);
-    return MoveRun(run, hn::Lanes(Tag()), rest, now, MoveOne<Blend>{tiles, pose, blend});
+    std::vector<double> room(tiles.probes);
+    return MoveRun(run, hn::Lanes(Tag()), rest, now, MoveOne<Blend>{tiles, pose, blend, room});
 }
 
 #define PROBEWARP_RUN(name, Blend)                                                                     \

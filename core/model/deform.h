@@ -1,5 +1,5 @@
-// Deforming: every vertex is moved by the blend of the probes' motions. The program's inner loop, and the
-// table of the blends.
+// Deforming: every vertex is moved by the blend of the probes' motions. The table of the blends, and what the
+// program's inner loop (deform_tiles.h) is held to.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,10 @@ struct BlendMethod {
     std::string_view name;   ///< what the command line and the project file call it
     std::string_view label;  ///< what the window calls it
     std::string_view when;   ///< one sentence: when to use it
-    DeformFunction deform;   ///< `blend` for every vertex, by vector units
+    /// Whether it is DLB of the DCNs as they are: a dragged probe can be added to the others' sum, and the
+    /// vertex shader can do it.
+    bool summed;
+    DeformFunction deform;  ///< `blend` for every vertex, by vector units
     /// The blend at one place, in double: #probes weights and motions in, the map of the plane out.
     Similarity<double> (*blend)(std::span<const double> weights, std::span<const Motion<double>> motions);
 };

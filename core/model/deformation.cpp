@@ -45,16 +45,13 @@ Pose pose_of(const Deformation& d, const Document& document) {
 }
 
 /// As a DeformFunction, of the tiles; without probes nothing moves.
-std::size_t deform_run(const Deformation& d, const Document& document, const BlendMethod& blend,
-                       VertexRun run, std::span<glm::vec2> now) {
-    const std::span<const glm::vec2> rest = mesh_of(d).rest;
-    if (!d.motions.empty()) return blend.deform(d.quick.tiles, rest, pose_of(d, document), run, now);
-    std::copy(rest.begin(), rest.end(), now.begin());
-    return 0;
-}
-
 std::size_t deform_run(Deformation& d, const Document& document, VertexRun run) {
-    return deform_run(d, document, *find_blend_method(document.blend), run, d.now);
+    const std::span<const glm::vec2> rest = mesh_of(d).rest;
+    if (!d.motions.empty())
+        return find_blend_method(document.blend)
+            ->deform(d.quick.tiles, rest, pose_of(d, document), run, d.now);
+    std::copy(rest.begin(), rest.end(), d.now.begin());
+    return 0;
 }
 
 /// Works out the weights of some vertices anew, and where these go; the others must be where they belong.
@@ -83,6 +80,7 @@ void refine_all(Deformation& d, const Document& document, bool rebound) {
 
 /// Makes sure of the tiles, where there are weights.
 void tile(Deformation& d) {
+    if (d.motions.empty()) d.quick = {};
     if (d.quick.tiles.vertices > 0 || d.motions.empty()) return;
     d.quick.tiles = make_tiles(weights_of(d), d.motions.size(), std::move(d.quick.tiles.weights));
 }
@@ -105,9 +103,8 @@ std::optional<std::size_t> only_moved(std::span<const Motion<double>> before,
 
 /// Moves all vertices. `dragged`: the probe that alone was moved, if so
 void deform_all(Deformation& d, const Document& document, std::optional<std::size_t> dragged) {
-    constexpr DeformFunction dlb = &deform_dlb;  // the one with a quicker way
     OthersSum& others = d.quick.others;
-    d.dragged = dragged && find_blend_method(document.blend)->deform == dlb && !d.now.empty();
+    d.dragged = dragged && find_blend_method(document.blend)->summed && !d.now.empty();
     if (!d.dragged) {
         others = {};
         d.cancelled = deform_run(d, document, {0, d.now.size()});
@@ -164,13 +161,13 @@ void update(Deformation& deformation, const Document& document, Pace pace) {
 }
 
 std::vector<glm::vec2> positions_by(const Deformation& deformation, const BlendMethod& blend) {
-    if (deformation.quick.tiles.vertices == 0 && !deformation.motions.empty()) {  // a copy
-        Deformation tiled = deformation;
-        tile(tiled);
-        return positions_by(tiled, blend);
-    }
-    std::vector<glm::vec2> positions(mesh_of(deformation).rest.size());
-    deform_run(deformation, deformation.source, blend, {0, positions.size()}, positions);
+    std::vector<glm::vec2> positions = mesh_of(deformation).rest;
+    if (deformation.motions.empty()) return positions;
+    const bool tiled = deformation.quick.tiles.vertices > 0;  // a copy is not
+    const WeightTiles own =
+        tiled ? WeightTiles() : make_tiles(weights_of(deformation), deformation.motions.size());
+    blend.deform(tiled ? deformation.quick.tiles : own, mesh_of(deformation).rest,
+                 pose_of(deformation, deformation.source), {0, positions.size()}, positions);
     return positions;
 }
 

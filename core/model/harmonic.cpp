@@ -210,11 +210,8 @@ void harmonic_shares(const WeightInput& input, WeightCache& cache, std::span<con
         for (std::size_t k = 0; k < across; ++k)
             for (const auto& [row, pull] : equations.pulls[first + k]) sides(row, Eigen::Index(k)) += pull;
         solve_by_panels<double>(harmonic.cholesky.panels, harmonic.cholesky.values, sides);
-        std::vector<double> shares(std::size_t(vertices) * across);
         for (Eigen::Index v = 0; v < vertices; ++v)
-            for (std::size_t k = 0; k < across; ++k)
-                shares[std::size_t(v) * across + k] = sides(harmonic.order[v], Eigen::Index(k));
-        take(first, shares, across);
+            take(std::size_t(v), first, {&sides(harmonic.order[v], 0), across});
     });
 }
 
@@ -222,9 +219,11 @@ std::vector<float> harmonic_table(const WeightInput& input) {
     WeightCache& cache = cache_for(input);
     const std::vector<Place> places = places_of(input, cache.shape);
     std::vector<float> table(input.mesh.rest.size() * input.probes.size(), 0.0f);
+    const std::size_t probes = input.probes.size();
     harmonic_shares(input, cache, places,
-                    [&](std::size_t place, std::span<const double> shares, std::size_t across) {
-                        write_shares(places, input.probes.size(), place, shares, across, table);
+                    [&](std::size_t vertex, std::size_t place, std::span<const double> shares) {
+                        write_shares(std::span(places).subspan(place, shares.size()), shares,
+                                     std::span(table).subspan(vertex * probes, probes));
                     });
     settle_rows(input, places, table);
     return table;

@@ -90,7 +90,6 @@ PanelCholesky prepare_cholesky(const SparseMatrix& matrix) {
     }
     for (std::size_t p = 0; p < panels.panels.size(); ++p)
         cholesky.first_update[p + 1] += cholesky.first_update[p];
-    cholesky.values.resize(panels.value_count);
     cholesky.matrix.resize(std::size_t(matrix.nonZeros()));
     cholesky.stale.assign(panels.panels.size(), 1);
     return cholesky;
@@ -136,7 +135,7 @@ class PanelFactory {
 
     void subtract(const Panels::Panel& panel, const PanelCholesky::Update& update) {
         const Panels::Panel& from = cholesky_.panels.panels[std::size_t(update.panel)];
-        const int count = from.rows_below - update.first, across = update.end - update.first;
+        const Eigen::Index count = from.rows_below - update.first, across = update.end - update.first;
         const double* first = values(from) + (from.columns + update.first) * from.columns;
         const Eigen::Map<const Dense> all(first, count, from.columns), own(first, across, from.columns);
         if (work_.size() < count * across) work_.resize(count * across);
@@ -147,9 +146,9 @@ class PanelFactory {
         else
             work.noalias() = all * own.transpose();
         const int* rows = rows_below(from) + update.first;
-        for (int i = 0; i < count; ++i) {
+        for (Eigen::Index i = 0; i < count; ++i) {
             double* to = values(panel) + place_[std::size_t(rows[i])] * panel.columns;
-            for (int j = 0; j < across; ++j) to[rows[j] - panel.first] -= work(i, j);
+            for (Eigen::Index j = 0; j < across; ++j) to[rows[j] - panel.first] -= work(i, j);
         }
     }
 
@@ -191,6 +190,7 @@ void mark_stale(PanelCholesky& cholesky, const SparseMatrix& matrix) {
 std::size_t update_cholesky(PanelCholesky& cholesky, const SparseMatrix& matrix,
                             const std::function<void()>& check) {
     assert(matrix.isCompressed() && std::size_t(matrix.nonZeros()) == cholesky.matrix.size());
+    cholesky.values.resize(cholesky.panels.value_count);
     mark_stale(cholesky, matrix);
     PanelFactory factory(cholesky);
     std::size_t made = 0;

@@ -12,7 +12,7 @@
 namespace probewarp {
 
 /// Where a factor L (lower triangular, in its own order) has its entries; the same for every matrix of one
-/// pattern. A panel is a run of columns that have the same rows below it.
+/// pattern. A panel (a supernode) is a run of columns that have the same rows below it.
 struct Panels {
     struct Panel {
         int first, columns;
@@ -32,7 +32,7 @@ struct Panels {
     std::size_t value_count = 0;
 };
 
-/// What is added to the matrix's diagonal at a row and column, in the factor's order; >= 0.
+/// A rank-1 update: what is added to the matrix's diagonal at a row and column, in the factor's order; >= 0.
 struct Raise {
     int at;
     float by;

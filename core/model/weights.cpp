@@ -12,20 +12,10 @@ namespace probewarp {
 
 namespace {
 
-glm::dvec2 in_radii(const Probe& probe, glm::dvec2 point) {
-    return (point - probe.rest) / probe.radius;  // before squaring, or tiny radii would give 0 / 0
-}
-
-double squared(glm::dvec2 d) { return d.x * d.x + d.y * d.y; }
-
-}  // namespace
-
-namespace {
-
 /// What the schemes by distance want of the probes, each number side by side, and room for one vertex.
 struct Reaches {
     std::vector<double> x, y, per_radius;  ///< #probes: where they rest, and 1 / radius
-    std::vector<double> own;               ///< #probes: to be written
+    std::vector<double> own;               ///< #probes: of the vertex in hand, to be written
 
     explicit Reaches(std::span<const Probe> probes) : own(probes.size()) {
         for (const Probe& probe : probes) {
@@ -92,19 +82,25 @@ void check_given_up(const WeightInput& input) {
 
 namespace {
 
+/// Calls work(reaches, vertex) for each, shared between threads.
+template <class Work>
+void for_each_row(std::span<const Probe> probes, std::size_t vertices, Work work) {
+    constexpr std::size_t as_many_as = 8;  // a weight is about as much work as that many of a deformation
+    over_blocks({0, vertices}, vertices, probes.size() * as_many_as, [&](VertexRun part) {
+        Reaches reaches(probes);
+        for (std::size_t v = part.first; v < part.first + part.count; ++v) work(reaches, v);
+        return std::size_t{0};
+    });
+}
+
 /// A scheme that looks at one vertex at a time: at(reaches, vertex, row).
 template <class At>
 std::vector<float> table_by_vertex(const WeightInput& input, At at) {
     const std::size_t probes = input.probes.size(), vertices = input.mesh.rest.size();
-    constexpr std::size_t as_many_as = 8;  // a weight is about as much work as that many of a deformation
     std::vector<float> table(vertices * probes);
-    over_blocks({0, vertices}, vertices, probes * as_many_as, [&](VertexRun part) {
-        Reaches reaches(input.probes);
-        for (std::size_t v = part.first; v < part.first + part.count; ++v) {
-            if (v % 4096 == 0) check_given_up(input);
-            at(reaches, input.mesh.rest[v], std::span(table).subspan(v * probes, probes));
-        }
-        return std::size_t{0};
+    for_each_row(input.probes, vertices, [&](Reaches& reaches, std::size_t v) {
+        if (v % 4096 == 0) check_given_up(input);
+        at(reaches, input.mesh.rest[v], std::span(table).subspan(v * probes, probes));
     });
     // A probe's own vertex is its rest rounded to floats.
     for (std::size_t i = 0; i < probes; ++i) {
@@ -157,23 +153,29 @@ const WeightScheme* find_weight_scheme(std::string_view name) {
     return found == schemes.end() ? nullptr : &*found;
 }
 
+namespace {
+
+/// One row of fade_weights.
+void fade(double falloff, Reaches& reaches, glm::dvec2 vertex, std::span<float> row) {
+    measure(reaches, vertex);
+    float most = 0;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        const double x = std::max(0.0, 1 - reaches.own[i] / (falloff * falloff));
+        reaches.own[i] = double(row[i]) * x * x;
+        most = std::max(most, float(reaches.own[i]));
+    }
+    if (most == 0) return;  // beyond every probe: as without a limit
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] = float(reaches.own[i]) / most;
+}
+
+}  // namespace
+
 void fade_weights(double falloff, std::span<const Probe> probes, std::span<const glm::vec2> vertices,
                   std::span<float> weights) {
     assert(weights.size() == vertices.size() * probes.size());
-    for (std::size_t v = 0; v < vertices.size(); ++v) {
-        const auto row = weights.subspan(v * probes.size(), probes.size());
-        float most = 0;
-        for (std::size_t i = 0; i < probes.size(); ++i) {
-            const double x = 1 - squared(in_radii(probes[i], glm::dvec2(vertices[v]))) / (falloff * falloff);
-            const double left = x > 0 ? double(row[i]) * x * x : 0;
-            most = std::max(most, float(left));
-        }
-        if (most == 0) continue;  // beyond every probe: as without a limit
-        for (std::size_t i = 0; i < probes.size(); ++i) {
-            const double x = 1 - squared(in_radii(probes[i], glm::dvec2(vertices[v]))) / (falloff * falloff);
-            row[i] = x > 0 ? float(double(row[i]) * x * x) / most : 0.0f;
-        }
-    }
+    for_each_row(probes, vertices.size(), [&](Reaches& reaches, std::size_t v) {
+        fade(falloff, reaches, vertices[v], weights.subspan(v * probes.size(), probes.size()));
+    });
 }
 
 void keep_heaviest(std::size_t most, std::size_t probes, std::span<float> weights) {

@@ -163,15 +163,10 @@ std::vector<std::uint32_t> followed_probes(const WeightInput& input) {
     return followed(input, shape, places_of(input, shape));
 }
 
-void write_shares(std::span<const Place> places, std::size_t probes, std::size_t place,
-                  std::span<const double> shares, std::size_t across, std::span<float> table) {
-    for (std::size_t k = 0; k < shares.size(); ++k) {
-        const Place& from = places[place + k % across];
-        float* row = table.data() + k / across * probes;
-        // Rounding leaves some a hair below 0.
-        for (const std::size_t i : from.probes)
-            row[i] = float(std::max(0.0, shares[k]) / double(from.probes.size()));
-    }
+void write_shares(std::span<const Place> places, std::span<const double> shares, std::span<float> row) {
+    for (std::size_t p = 0; p < places.size(); ++p)  // rounding leaves some a hair below 0
+        for (const std::size_t i : places[p].probes)
+            row[i] = float(std::max(0.0, shares[p]) / double(places[p].probes.size()));
 }
 
 void settle_rows(const WeightInput& input, std::span<const Place> places, std::span<float> table) {

@@ -80,18 +80,17 @@ WeightCache& cache_for(const WeightInput& input);
 /// where there is none.
 std::vector<float> geodesic_distances(const Shape& shape, const Place& place);
 
-/// Takes the shares of some places, from `place` on: #grid vertices x `across`, row-major. May be called by
-/// several threads at once.
-using TakeShares = std::function<void(std::size_t place, std::span<const double> shares, std::size_t across)>;
+/// Takes the shares of some places, from `place` on, in a grid vertex. May be called by several threads at
+/// once.
+using TakeShares = std::function<void(std::size_t vertex, std::size_t place, std::span<const double> shares)>;
 
 /// The share of each place in each grid vertex: harmonic between the places, in [0, 1] and summing to 1 but
 /// for rounding. Unspecified on islands without a place. The same, bit for bit, whatever the cache holds.
 void harmonic_shares(const WeightInput& input, WeightCache& cache, std::span<const Place> places,
                      const TakeShares& take);
 
-/// Writes the shares into the table (#vertices x #probes), each place's divided among its probes.
-void write_shares(std::span<const Place> places, std::size_t probes, std::size_t place,
-                  std::span<const double> shares, std::size_t across, std::span<float> table);
+/// Writes a vertex's shares of some places into its row (#probes), each divided among its place's probes.
+void write_shares(std::span<const Place> places, std::span<const double> shares, std::span<float> row);
 
 /// Divides each row by its largest, then sets the rows that are known: at a probe's anchor, and on an island
 /// without a probe. A row without any weight takes the place nearest as the crow flies.

@@ -14,9 +14,8 @@ std::vector<double> raw_shares(Scene& scene) {
     const auto places = places_of(input, cache.shape);
     std::vector<double> all(cache.shape.vertices * places.size(), -1);
     harmonic_shares(input, cache, places,
-                    [&](std::size_t place, std::span<const double> part, std::size_t across) {
-                        for (std::size_t k = 0; k < part.size(); ++k)
-                            all[k / across * places.size() + place + k % across] = part[k];
+                    [&](std::size_t vertex, std::size_t place, std::span<const double> shares) {
+                        std::ranges::copy(shares, &all[vertex * places.size() + place]);
                     });
     return all;
 }
@@ -137,6 +136,30 @@ TEST(Harmonic, IsStrictlyBetweenNoughtAndOneAwayFromTheProbes) {
         for (std::size_t p = 0; v != on && p < 3; ++p) {
             EXPECT_GT(all[v * 3 + p], 0);
             EXPECT_LT(all[v * 3 + p], 1);
+        }
+}
+
+TEST(Harmonic, IsTheMeanOfTheNeighboursWhereNobodyHolds) {
+    // Large, so that panels are wide and many.
+    Scene scene(whole_grid(100, 100), {{103, 207}, {500, 500}, {808.5, 301}, {807, 303}, {999, 1}});
+    const auto all = raw_shares(scene);
+    const auto places = places_of(scene.input(), scene.cache->shape);
+    for (int row = 1; row < 100; ++row)
+        for (int column = 1; column < 100; ++column) {
+            const auto holds = [&](const Place& place) {
+                return std::hypot(column * cell - place.at.x, row * cell - place.at.y) < 1.5 * cell;
+            };
+            if (std::ranges::any_of(places, holds)) continue;
+            double sum = 0;
+            for (std::size_t p = 0; p < places.size(); ++p) {
+                const auto at = [&](int c, int r) { return all[scene.at(c, r) * places.size() + p]; };
+                const double here = at(column, row);
+                const double beside = at(column - 1, row) + at(column + 1, row);
+                const double mean = (beside + at(column, row - 1) + at(column, row + 1)) / 4;
+                ASSERT_NEAR(here, mean, 1e-13) << column << ' ' << row;  // a few roundings of shares of 1
+                sum += here;
+            }
+            ASSERT_NEAR(sum, 1, 1e-9);  // the condition number is some 1e4, of 1e-16 each
         }
 }
 
