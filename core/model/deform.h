@@ -23,8 +23,8 @@ struct Pose {
 /// Moves a run of vertices and those of the blocks that it touches, and returns for how many of all these the
 /// blend has no answer (those follow their heaviest probe; see each blend). Each comes out the same whatever
 /// the run is. rest, now: #vertices of the mesh, image pixels; now may not be rest
-using DeformFunction = std::size_t (*)(const WeightTiles& tiles, std::span<const glm::vec2> rest,
-                                       const Pose& pose, VertexRun run, std::span<glm::vec2> now);
+using DeformFunction = std::size_t(const WeightTiles& tiles, std::span<const glm::vec2> rest,
+                                   const Pose& pose, VertexRun run, std::span<glm::vec2> now);
 
 struct BlendMethod {
     std::string_view name;   ///< what the command line and the project file call it
@@ -33,7 +33,7 @@ struct BlendMethod {
     /// Whether it is DLB of the DCNs as they are: a dragged probe can be added to the others' sum, and the
     /// vertex shader can do it.
     bool summed;
-    DeformFunction deform;  ///< `blend` for every vertex, by vector units
+    DeformFunction* deform;  ///< `blend` for every vertex, by vector units
     /// The blend at one place, in double: #probes weights and motions in, the map of the plane out.
     Similarity<double> (*blend)(std::span<const double> weights, std::span<const Motion<double>> motions);
 };

@@ -11,9 +11,8 @@
 
 namespace probewarp {
 
-/// deform_dlb as a DeformFunction.
-std::size_t deform_dlb(const WeightTiles& tiles, std::span<const glm::vec2> rest, const Pose& pose,
-                       VertexRun run, std::span<glm::vec2> now);
+/// DLB.
+DeformFunction deform_dlb;
 
 /// What all probes but one add up to: worth keeping while that one is dragged.
 struct OthersSum {

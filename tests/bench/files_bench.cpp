@@ -1,5 +1,6 @@
 // Opening, drawing and exporting a picture of 24 megapixels, against the libraries alone.
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <cmath>
@@ -136,8 +137,15 @@ BENCHMARK_CAPTURE(open_against, libjpeg, "jpeg", "libjpeg_time", &bench::libjpeg
     ->MeasureProcessCPUTime()
     ->Iterations(5);
 
+/// The most memory that a finished child held, in bytes; the largest of all so far.
+double peak_of_children() {
+    rusage usage{};
+    getrusage(RUSAGE_CHILDREN, &usage);
+    return double(usage.ru_maxrss) * 1024;
+}
+
 /// The whole program from a JPEG to a PNG, against its decoding and encoding alone: the counter is the share
-/// of the program's time that these two would take.
+/// of the program's time that these two would take; and its memory over the decoded picture's.
 void program_against_its_files(benchmark::State& state) {
     const auto bytes = find_image_format("jpeg")->encode(picture(), {});
     const auto folder = std::filesystem::temp_directory_path();
@@ -154,6 +162,7 @@ void program_against_its_files(benchmark::State& state) {
             const Image image = find_image_format("jpeg")->decode(bytes);
             find_image_format("png")->encode(image, {});
         });
+    state.counters["memory"] = peak_of_children() / (4.0 * picture().width * picture().height);
     std::filesystem::remove(from);
     std::filesystem::remove(to);
 }
@@ -162,6 +171,25 @@ BENCHMARK(program_against_its_files)
     ->UseManualTime()
     ->MeasureProcessCPUTime()
     ->Iterations(3);
+
+/// The whole program on a picture of 512 pixels, from PNG to PNG.
+void render_of_512_pixels(benchmark::State& state) {
+    Image image;
+    image.width = image.height = 512;
+    std::vector<std::uint8_t> rgba;
+    for (int i = 0; i < 512 * 512 * 4; ++i) rgba.push_back(std::uint8_t(i % 4 == 3 ? 255 : i * i / 4099));
+    image.rgba = std::move(rgba);
+    const auto folder = std::filesystem::temp_directory_path();
+    const std::string from = folder / "probewarp-bench-512.png", to = folder / "probewarp-bench-512-out.png";
+    write_file(from, find_image_format("png")->encode(image, {}));
+    const std::string command = "'" PROBEWARP_PROGRAM "' render '" + from + "' -o '" + to +
+                                "' --probe 200,200:230,180,23 --probe 400,150";
+    for (auto _ : state)
+        if (std::system(command.c_str()) != 0) state.SkipWithError("the program failed");
+    std::filesystem::remove(from);
+    std::filesystem::remove(to);
+}
+BENCHMARK(render_of_512_pixels)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void mipmaps(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(smaller_levels(picture()));
