@@ -1,9 +1,11 @@
 #include "cli/drawing.h"
 
 #include <fmt/format.h>
+#include <tbb/info.h>
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "cli/arguments.h"
@@ -55,7 +57,21 @@ void Output::finish() {
     });
 }
 
-Drawer::Drawer(const RenderPlan& plan) : plan_(plan), context_(open_context(plan.options.backend)) {}
+namespace {
+
+/// A software rasteriser's threads are as many as there are cores, and would take turns with the encoder's:
+/// on two cores one draws, which this thread does best itself, and one encodes. LP_NUM_THREADS, where it is
+/// set, is heeded.
+std::unique_ptr<Context> open_beside_the_encoder(const std::string& backend) {
+    const int cores = tbb::info::default_concurrency();
+    setenv("LP_NUM_THREADS", std::to_string(cores <= 2 ? 0 : cores / 2).c_str(), 0);
+    return open_context(backend);
+}
+
+}  // namespace
+
+Drawer::Drawer(const RenderPlan& plan)
+    : plan_(plan), context_(open_beside_the_encoder(plan.options.backend)) {}
 
 namespace {
 
@@ -82,7 +98,7 @@ Image pixels_taken_from(Image& image) {
 /// Hands the document's picture and deformed mesh to the renderer.
 void Drawer::hold(const Document& document, const Deformation& deformation) {
     const View view = export_view(document, deformation, plan_.settings);
-    const int levels = wanted_levels(shrunk_triangles(deformation, view));
+    const int levels = Footprints(deformation, view).wanted_levels();
     Picture& picture = *std::const_pointer_cast<Picture>(document.picture);
     std::vector<std::byte>().swap(picture.original);
     renderer_.set_picture(upload_picture(pixels_taken_from(picture.image), levels));

@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdio>
+#include <fstream>
 #include <mutex>
+#include <string>
 #include <string_view>
 
 namespace probewarp {
@@ -23,19 +25,31 @@ class Timings {
         return work();
     }
 
-    /// To standard error, a line for each stage and one for all, which is less where stages overlapped.
+    /// To standard error, a line for each stage and one for all, which is less where stages overlapped; and
+    /// the most memory that was held, where the system tells.
     void print() const {
         const auto line = [](std::string_view name, double seconds) {
             std::fprintf(stderr, "timings: %.*s %.3f s\n", int(name.size()), name.data(), seconds);
         };
         for (std::size_t i = 0; i < stage_names.size(); ++i) line(stage_names[i], seconds_[i]);
         line("in all", seconds_since(start_));
+        if (const double mib = peak_memory(); mib > 0)
+            std::fprintf(stderr, "timings: memory %.1f MiB\n", mib);
     }
 
   private:
     using Clock = std::chrono::steady_clock;
     static double seconds_since(Clock::time_point start) {
         return std::chrono::duration<double>(Clock::now() - start).count();
+    }
+
+    /// MiB; 0 where it is not known.
+    static double peak_memory() {
+        std::ifstream status("/proc/self/status");
+        double kib = 0;
+        for (std::string line; std::getline(status, line);)
+            if (std::sscanf(line.c_str(), "VmHWM: %lf kB", &kib) == 1) break;
+        return kib / 1024;
     }
 
     struct Watch {

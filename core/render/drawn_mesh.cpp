@@ -155,10 +155,11 @@ void DrawnMesh::set_attribute(GLuint location, std::span<const std::byte> values
     check_gl("uploading the overlay");
 }
 
-void DrawnMesh::draw(std::size_t triangles) const {
+void DrawnMesh::draw(std::size_t first, std::size_t count) const {
     glBindVertexArray(array_.name());
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.name());
-    glDrawElements(GL_TRIANGLES, GLsizei(3 * triangles), GL_UNSIGNED_INT, nullptr);
+    glDrawElements(GL_TRIANGLES, GLsizei(count * 3), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(first * 3 * sizeof(corners_[0])));
 }
 
 void DrawnMesh::draw_lines() {

@@ -35,9 +35,9 @@ class DrawnMesh {
     void set_attribute(GLuint location, std::span<const std::byte> values, int components);
 
     /// Where the mesh folds, a later triangle lies over an earlier one.
-    void draw() const { draw(corners_.size() / 3); }
-    /// The first `triangles` of them alone.
-    void draw(std::size_t triangles) const;
+    void draw() const { draw(0, corners_.size() / 3); }
+    /// So many triangles, from the first one on.
+    void draw(std::size_t first, std::size_t count) const;
     /// Each edge once.
     void draw_lines();
 

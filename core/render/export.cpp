@@ -100,7 +100,10 @@ Image blank(const Image& like, int rows) {
 
 ExportJob::ExportJob(Renderer& renderer, const Document& document, const Deformation& deformation,
                      const ExportSettings& settings)
-    : renderer_(renderer), settings_(settings), view_(export_view(document, deformation, settings)) {
+    : renderer_(renderer),
+      settings_(settings),
+      view_(export_view(document, deformation, settings)),
+      footprints_(deformation, view_) {
     assert(settings.samples >= 1 && settings.samples <= max_samples);
     const Image& original = document.picture->image;
     like_.width = view_.width;
@@ -111,7 +114,6 @@ ExportJob::ExportJob(Renderer& renderer, const Document& document, const Deforma
     may_be_transparent_ = !settings.background && !(renderer.is_opaque() && covers(deformation, view_));
     tile_ = {layer_width / settings.samples, layer_height / settings.samples};
     tiles_ = {(view_.width + tile_[0] - 1) / tile_[0], (view_.height + tile_[1] - 1) / tile_[1]};
-    shrunk_ = shrunk_triangles(deformation, view_);
 }
 
 void ExportJob::draw_tile(Image& into, int first_row) {
@@ -121,7 +123,8 @@ void ExportJob::draw_tile(Image& into, int first_row) {
     tile.width = std::min(tile_[0], view_.width - left);
     tile.height = std::min(tile_[1], view_.height - top);
     renderer_.render(into, left, top - first_row, tile,
-                     {settings_.samples, settings_.background, settings_.overlay, any_within(shrunk_, tile)});
+                     {settings_.samples, settings_.background, settings_.overlay},
+                     footprints_.runs_within(tile));
     ++next_;
 }
 

@@ -139,43 +139,51 @@ void Renderer::draw(const View& view, int samples, bool with_overlay) {
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    draw_shape(with_overlay);
+    if (moved_ || with_overlay)
+        mesh_.draw();
+    else
+        draw_picture();
     glDisable(GL_BLEND);
     check_gl("drawing the picture");
 }
 
-void Renderer::draw_shape(bool with_overlay) {
-    if (moved_ || with_overlay) return mesh_.draw();
+void Renderer::draw_picture() {
     glBindVertexArray(picture_array_.name());
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-void Renderer::render(Image& image, int left, int top, const View& view, const FileStyle& style) {
+void Renderer::render(Image& image, int left, int top, const View& view, const FileStyle& style,
+                      std::span<const TriangleRun> runs) {
     const bool with_overlay = style.overlay && overlay_style_;
     if (!picture_.opaque || style.samples > 1 || with_overlay) {
         draw(view, style.samples, with_overlay);
         return read_back(image, left, top, view, style.samples, style.background);
     }
-    draw_straight(view, image.bits() == 16, style);
+    draw_straight(view, image.bits() == 16, style.background, runs);
     read_integers(image, left, top, view);
 }
 
-void Renderer::draw_straight(const View& view, bool deep, const FileStyle& style) {
+void Renderer::draw_straight(const View& view, bool deep, std::optional<Colour> background,
+                             std::span<const TriangleRun> runs) {
     resize(integers_, view.width, view.height, deep ? GL_RGBA16UI : GL_RGBA8UI);
     begin(integers_);
-    const Colour fill = style.background.value_or(Colour{});
-    const GLuint one = deep ? 257 : 1, full = style.background ? 255 * one : 0;
-    const GLuint beside[4]{fill.r * one, fill.g * one, fill.b * one, full};
-    const GLuint nothing[4]{};
-    glClearBufferuiv(GL_COLOR, 0, style.background ? beside : nothing);
-    const GlProgram& program = (style.shrunk ? straight_program_ : straight_unshrunk_program_).get();
-    glUseProgram(program.name());
-    set_view(program, view, 1);
-    set(program, "picture", 0);
-    set(program, "largest", deep ? 65535.0f : 255.0f);
-    if (style.shrunk) set(program, "last_level", picture_.last_level);
+    const Colour fill = background.value_or(Colour{});
+    const GLuint one = deep ? 257 : 1;
+    const GLuint filled[4]{fill.r * one, fill.g * one, fill.b * one, 255 * one}, nothing[4]{};
+    glClearBufferuiv(GL_COLOR, 0, background ? filled : nothing);
     glBindTexture(GL_TEXTURE_2D, picture_.texture.name());
-    draw_shape(false);
+    for (const TriangleRun& run : runs) {
+        const GlProgram& program = (run.shrunk ? straight_program_ : straight_unshrunk_program_).get();
+        glUseProgram(program.name());
+        set_view(program, view, 1);
+        set(program, "picture", 0);
+        set(program, "largest", deep ? 65535.0f : 255.0f);
+        if (run.shrunk) set(program, "last_level", picture_.last_level);
+        if (moved_)
+            mesh_.draw(run.first, run.count);
+        else
+            draw_picture();
+    }
     check_gl("drawing the picture");
 }
 

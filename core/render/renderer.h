@@ -58,7 +58,12 @@ struct FileStyle {
     int samples = 1;                   ///< samples x samples a target pixel
     std::optional<Colour> background;  ///< empty: as transparent as it is
     bool overlay = false;
-    bool shrunk = true;  ///< false: nothing is drawn smaller than the picture has it, mipmaps are not wanted
+};
+
+/// Some of the mesh's triangles, one after the other.
+struct TriangleRun {
+    std::size_t first = 0, count = 0;
+    bool shrunk = true;  ///< false: the picture is drawn no smaller than it is, mipmaps are not wanted
 };
 
 class Renderer {
@@ -93,8 +98,10 @@ class Renderer {
                    std::optional<Colour> background);
 
     /// draw and read_back. An opaque picture at one sample a pixel has nothing to blend or average and is
-    /// drawn into the integers at once, to the same values.
-    void render(Image& image, int left, int top, const View& view, const FileStyle& style);
+    /// drawn into the integers at once, to the same values. runs: in the mesh's order, at least what shows in
+    /// the view, or where the mesh has not moved one run for all.
+    void render(Image& image, int left, int top, const View& view, const FileStyle& style,
+                std::span<const TriangleRun> runs);
 
     /// Shows what draw drew with one sample a pixel: over a checkerboard of squares of `square` pixels inside
     /// the image's frame, dimmed beside it; with the mesh's lines where asked. Returns the texture that holds
@@ -107,8 +114,9 @@ class Renderer {
   private:
     void set_view(const GlProgram& program, const View& view, int samples) const;
     void use_mesh_program(const View& view, int samples, bool with_overlay);
-    void draw_shape(bool with_overlay);
-    void draw_straight(const View& view, bool deep, const FileStyle& style);
+    void draw_picture();
+    void draw_straight(const View& view, bool deep, std::optional<Colour> background,
+                       std::span<const TriangleRun> runs);
     void resolve(const View& view, bool deep, int samples, std::optional<Colour> background);
     void read_integers(Image& image, int left, int top, const View& view);
     void draw_lines(const View& view, glm::vec4 colour);
