@@ -125,7 +125,7 @@ Sums SumsOfMagnitudes(const Row& r) {
         average = hn::Add(average, Magnitudes(Residual(3, s)));
         paeth = hn::Add(paeth, Magnitudes(Residual(4, s)));
     }
-    const auto total = [&](hn::Vec<SumTag> v) { return hn::GetLane(hn::SumOfLanes(tag, v)); };
+    const auto total = [&](hn::Vec<SumTag> v) HWY_ATTR { return hn::GetLane(hn::SumOfLanes(tag, v)); };
     Sums sums{total(none), total(sub), total(up), total(average), total(paeth)};
     for (std::size_t k = 0; k < r.step; ++k) add_magnitudes(r, k, sums);
     for (; i < r.bytes; ++i) add_magnitudes(r, i, sums);
