@@ -23,29 +23,31 @@ namespace {
 
 // ---- one strip ----
 
-/// How hard a compression tries. The levels are libdeflate's.
+/// How hard a compression tries.
 struct Effort {
     std::array<FilterSet, 3>
-        filters;                   ///< each in turn for the whole strip, the smallest kept; 0: none further
-    int level;                     ///< 0: ISA-L; 12: zlib besides, where the strip packs to a twentieth
-    int drawing_level;             ///< where the strip packs to a sixth or less, as photographs never do
+        filters;      ///< each in turn for the whole strip, the smallest kept; 0: none further
+    int quick_level;  ///< ISA-L's; 0: libdeflate's from the start
+    /// libdeflate's, where a strip packs to a sixth or less, as photographs never do; 12: zlib besides, where
+    /// it packs to a twentieth
+    int level;
     std::size_t strip_bytes;       ///< about
     std::array<unsigned, 2> zlib;  ///< the stream's two first bytes, which hint at the level
 };
 
-// Measured on photographs and drawings. On photographs level 1 makes what zlib's 5 does within one per cent,
-// ten times as fast; drawings need level 4 for that, and there it costs little. 12 is libdeflate's best.
+// Measured on photographs and drawings. On photographs ISA-L makes what zlib's 5 does within three per cent,
+// twenty times as fast; drawings need libdeflate's 4 for that, and there it costs little. 12 is its best.
 // Choosing row by row serves photographs best, but repetitive drawings do better with one filter throughout.
 // Strips forget what was before: at a mebibyte that costs a thousandth.
 constexpr Effort effort_of(Compression compression) {
     constexpr std::size_t mebibyte = std::size_t{1} << 20;
     switch (compression) {
         case Compression::fast:
-            return {{all_filters}, 0, 1, mebibyte, {0x78, 0x01}};
+            return {{sub_or_up}, 1, 1, mebibyte, {0x78, 0x01}};
         case Compression::small:
-            return {{all_filters, no_filter, up_filter}, 12, 12, 8 * mebibyte, {0x78, 0xDA}};
+            return {{all_filters, no_filter, up_filter}, 0, 12, 8 * mebibyte, {0x78, 0xDA}};
         default:
-            return {{all_filters}, 1, 4, mebibyte, {0x78, 0x9C}};
+            return {{all_filters}, 2, 4, mebibyte, {0x78, 0x9C}};
     }
 }
 
@@ -125,11 +127,12 @@ std::vector<std::uint8_t> best_filtered(const PngStripRows& rows, const Effort& 
 }
 
 std::vector<std::byte> deflated_strip(Bytes raw, const Effort& effort, bool last) {
-    std::vector<std::byte> out =
-        effort.level == 0 ? deflate_quickly(raw, last) : deflate_whole(raw, effort.level);
-    const bool again = effort.drawing_level > effort.level && out.size() <= raw.size() / 6;
-    if (again) out = deflate_whole(raw, effort.drawing_level);
-    if ((again || effort.level > 0) && !last) open_end(out);
+    if (effort.quick_level > 0) {
+        std::vector<std::byte> quick = deflate_quickly(raw, last, effort.quick_level);
+        if (quick.size() > raw.size() / 6) return quick;
+    }
+    std::vector<std::byte> out = deflate_whole(raw, effort.level);
+    if (!last) open_end(out, raw.size());
     if (effort.level == 12 && out.size() <= raw.size() / 20) {
         std::vector<std::byte> other = deflate_by_zlib(raw, last);
         if (other.size() < out.size()) return other;

@@ -39,8 +39,9 @@ struct PngStrip {
 };
 
 /// A PNG's rows on their way into the file. Strips are put to work as rows come, so that the next ones may be
-/// drawn meanwhile. What comes out depends on the samples and the compression alone, not on how many threads
-/// there are or in how many bands the rows came.
+/// drawn meanwhile. What comes out does not depend on how many threads there are or in how many bands the
+/// rows came. (Its bytes may differ between kinds of processors, for which ISA-L has code of their own; what
+/// they unpack to does not.)
 class PngRows {
   public:
     PngRows(const PngShape& shape, Compression compression);

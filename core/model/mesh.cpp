@@ -252,7 +252,7 @@ std::optional<MeshPoint> seen_from(const Mesh& mesh, std::span<const glm::vec2> 
 /// Whether the box around a triangle holds `point`: few do, and this is quickly seen. Rows lie below each
 /// other, so y goes first.
 bool is_near(const Mesh& mesh, std::span<const glm::vec2> vertices, std::size_t triangle, glm::dvec2 point) {
-    constexpr double rounding = 1e-4;  // pixels: more than `edge` is of the largest picture
+    constexpr double rounding = 1e-4;  // pixels: more than `edge` is of a triangle as large as a picture
     const auto* t = mesh.triangles.data() + 3 * triangle;
     const glm::vec2 a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
     const auto within = [](float p, float q, float r, double at) {

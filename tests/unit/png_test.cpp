@@ -389,7 +389,7 @@ TEST(DeflateStrip, StripsMakeOneStream) {
                 const auto raw = strip_bytes(random, 1 + random() % (run % 10 == 0 ? 400000 : 3000), values);
                 auto strip = deflate_whole(raw, level);
                 ++ends[std::size_t(std::bit_width(std::to_integer<unsigned>(strip.back()))) % 8];
-                if (i < 3) open_end(strip);
+                if (i < 3) open_end(strip, raw.size());
                 stream.insert(stream.end(), strip.begin(), strip.end());
                 all.insert(all.end(), raw.begin(), raw.end());
             }
@@ -409,8 +409,8 @@ TEST(DeflateStrip, StripsOfAllKindsMakeOneStream) {
             const auto by = random() % 4;
             auto strip = by == 0   ? deflate_whole(raw, 1)
                          : by == 1 ? deflate_by_zlib(raw, last)
-                                   : deflate_quickly(raw, last);
-            if (by == 0 && !last) open_end(strip);
+                                   : deflate_quickly(raw, last, int(1 + random() % 3));
+            if (by == 0 && !last) open_end(strip, raw.size());
             stream.insert(stream.end(), strip.begin(), strip.end());
             all.insert(all.end(), raw.begin(), raw.end());
         }
