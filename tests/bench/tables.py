@@ -115,8 +115,8 @@ def deformation(results):
 
 def others(results):
     found = {}
-    for b in results["benchmarks"]:  # "dab_to_vertices/100/iterations:189" and the like
-        found["/".join(part for part in b["name"].split("/") if ":" not in part and not part.endswith("_time"))] = b
+    for b in results["benchmarks"]:  # "dab_to_vertices/100/iterations:189", "drag_frame_by_processor/cells:100" and the like
+        found["/".join(part for part in b["name"].replace("cells:", "").split("/") if ":" not in part and not part.endswith("_time"))] = b
 
     def of(benchmark, field):
         if benchmark not in found or found[benchmark].get("error_occurred"):
