@@ -53,11 +53,6 @@ void duplicate_probe(Editor& editor) {
     if (add_probe(editor, copy)) commit(editor, "Duplicate " + original.name);
 }
 
-void put_to_rest(Probe& probe) {
-    probe.now = probe.rest;
-    probe.angle = 0;
-}
-
 void reset_probe(Editor& editor) {
     put_to_rest(*selected_probe(editor));
     commit(editor, "Reset " + selected_probe(editor)->name);

@@ -30,7 +30,7 @@ Shown wanted(const App& app, glm::ivec2 size) {
     // Another picture's mesh is no way to show this one: until its binding is there it is shown as it is.
     wanted.bound = editor.deformation.binding && editor.deformation.source.picture == editor.document.picture;
     if (wanted.bound) wanted.overlay = overlay_key(editor);
-    if (wanted.bound && is_shaded(app)) wanted.pose = shaded_pose(editor.document);
+    if (wanted.bound && is_shaded(app)) wanted.pose = transformations_of(editor.document);
     if (const auto x = divider(editor); x && wanted.bound) {
         wanted.compared = editor.comparison->blend;
         wanted.divider = int(*x);

@@ -6,18 +6,6 @@
 
 namespace probewarp {
 
-namespace {
-
-Document put_to_rest(Document document) {
-    for (Probe& probe : document.probes) {
-        probe.now = probe.rest;
-        probe.angle = 0;
-    }
-    return document;
-}
-
-}  // namespace
-
 bool wants_trial(const App& app) {
     const bool still = app.frames_wanted <= 0 && !app.editor.gesture && !app.binding_job && !is_busy(app);
     return !app.deform_measurement.over && app.shown.picture && still;
@@ -47,15 +35,8 @@ bool is_shaded(const App& app) {
                                           editor.gesture->kind == Gesture::Kind::turn);
     if (!drags || !find_blend_method(editor.document.blend)->summed || editor.comparison) return false;
     return is_bound(editor.deformation.binding.get(), editor.document) &&
-           put_to_rest(editor.deformation.source) == put_to_rest(editor.document) &&
+           unposed(editor.deformation.source) == unposed(editor.document) &&
            deform_choice(app).by == DeformBy::shader;
-}
-
-std::vector<DualComplex<float>> shaded_pose(const Document& document) {
-    std::vector<DualComplex<float>> pose;
-    for (const Probe& probe : document.probes)
-        pose.push_back(cast<float>(motion_of(probe, centre(document.picture->image)).p));
-    return pose;
 }
 
 std::string deform_facts(const App& app) {
@@ -81,10 +62,6 @@ std::string deform_explanation(const App& app) {
             "{:.3f} ms.",
             DeformTrial::vertices, DeformTrial::probes, times->processor, times->shader);
     return text;
-}
-
-WeightsKey weights_key(const Deformation& deformation) {
-    return {deformation.binding, put_to_rest(deformation.source)};
 }
 
 }  // namespace probewarp

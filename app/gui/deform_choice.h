@@ -4,9 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "model/deformation.h"
 #include "render/deform_trial.h"
 
 namespace probewarp {
@@ -31,20 +29,9 @@ DeformChoice deform_choice(const App& app);
 /// processor has them, which the pointer, the brush and the export ask for.
 bool is_shaded(const App& app);
 
-/// #probes: what the shader blends, about the picture's centre.
-std::vector<DualComplex<float>> shaded_pose(const Document& document);
-
 /// "by processor (0.06 ms; shader 3.12 ms)"
 std::string deform_facts(const App& app);
 /// What these times are, in a few sentences.
 std::string deform_explanation(const App& app);
-
-/// What the weights follow from: who keeps this need not look at the weights themselves.
-struct WeightsKey {
-    std::shared_ptr<const Binding> binding;
-    Document at_rest;  ///< what the deformation is of, with every probe at rest
-    friend bool operator==(const WeightsKey&, const WeightsKey&) = default;
-};
-WeightsKey weights_key(const Deformation& deformation);
 
 }  // namespace probewarp

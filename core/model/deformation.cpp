@@ -92,6 +92,12 @@ std::vector<Motion<double>> motions_of(const Document& document) {
     return all;
 }
 
+std::vector<DualComplex<float>> transformations_of(std::span<const Motion<double>> motions) {
+    std::vector<DualComplex<float>> all;
+    for (const auto& motion : motions) all.push_back(cast<float>(motion.p));
+    return all;
+}
+
 /// The one probe whose motion differs; empty where there is none, or more than one.
 std::optional<std::size_t> only_moved(std::span<const Motion<double>> before,
                                       std::span<const Motion<double>> after) {
@@ -115,14 +121,15 @@ void deform_all(Deformation& d, const Document& document, std::optional<std::siz
     d.cancelled = deform_dlb_dragged(d.quick.tiles, others, mesh_of(d).rest, pose, d.now);
 }
 
-/// The probes' motions, and what follows from them.
-void take_motions(Deformation& d, std::vector<Motion<double>> motions) {
-    d.motions = std::move(motions);
-    d.transformations.clear();
-    for (const auto& motion : d.motions) d.transformations.push_back(cast<float>(motion.p));
+}  // namespace
+
+WeightsKey weights_key(const Deformation& deformation) {
+    return {deformation.binding, unposed(deformation.source)};
 }
 
-}  // namespace
+std::vector<DualComplex<float>> transformations_of(const Document& document) {
+    return transformations_of(motions_of(document));
+}
 
 void pose(Deformation& d, const Document& document, std::shared_ptr<const Binding> binding, Pace pace) {
     assert(fits(binding.get(), document));
@@ -137,7 +144,8 @@ void pose(Deformation& d, const Document& document, std::shared_ptr<const Bindin
     if (dragging && same_blend) dragged = only_moved(d.motions, motions);
     if (!d.binding || d.binding->mesh != binding->mesh) ++d.mesh_version;
     d.binding = std::move(binding);
-    take_motions(d, std::move(motions));
+    d.transformations = transformations_of(motions);
+    d.motions = std::move(motions);
     d.now.resize(mesh_of(d).rest.size());
     if (in_runs) {
         tile(d);

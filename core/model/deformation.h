@@ -46,6 +46,17 @@ const Mesh& mesh_of(const Deformation& deformation);
 /// The weights that deform: #vertices x #probes, row-major.
 std::span<const float> weights_of(const Deformation& deformation);
 
+/// What the weights that deform follow from: who keeps this need not look at the weights themselves.
+struct WeightsKey {
+    std::shared_ptr<const Binding> binding;
+    Document unposed;  ///< what the deformation is of
+    friend bool operator==(const WeightsKey&, const WeightsKey&) = default;
+};
+WeightsKey weights_key(const Deformation& deformation);
+
+/// The DCNs of a document's pose, about its picture's centre, as Deformation::transformations: #probes.
+std::vector<DualComplex<float>> transformations_of(const Document& document);
+
 /// Whether the pose is about to change again, as while a probe is dragged: then the vertices are moved by the
 /// quickest way, and the next time that it is not, by the usual one.
 enum class Pace { settled, dragging };

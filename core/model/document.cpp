@@ -52,6 +52,11 @@ Probe new_probe(const Document& document, glm::dvec2 rest) {
     return probe;
 }
 
+Document unposed(Document document) {
+    for (Probe& probe : document.probes) put_to_rest(probe);
+    return document;
+}
+
 bool is_painted(const Document& document) {
     return std::any_of(document.probes.begin(), document.probes.end(),
                        [](const Probe& probe) { return probe.paint != nullptr; });

@@ -44,6 +44,9 @@ std::size_t place_of(const Document& document, int id);
 /// A probe at `rest` with a fresh id, the next colour, and a reach of an eighth of the picture's longer side.
 Probe new_probe(const Document& document, glm::dvec2 rest);
 
+/// The document with every probe at rest: all but the pose.
+Document unposed(Document document);
+
 /// Whether any probe has paint.
 bool is_painted(const Document& document);
 

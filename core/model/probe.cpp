@@ -10,6 +10,11 @@ Motion<double> motion_of(const Probe& probe, glm::dvec2 centre) {
 
 bool at_rest(const Probe& probe) { return probe.rest == probe.now && probe.angle == 0; }
 
+void put_to_rest(Probe& probe) {
+    probe.now = probe.rest;
+    probe.angle = 0;
+}
+
 Colour probe_colour(int index) {
     static constexpr std::array<Colour, 12> colours{{{0xe6, 0x9f, 0x00},
                                                      {0x56, 0xb4, 0xe9},

@@ -45,6 +45,7 @@ Motion<double> motion_of(const Probe& probe, glm::dvec2 centre);
 
 /// Whether the probe stands where it was put, unturned.
 bool at_rest(const Probe& probe);
+void put_to_rest(Probe& probe);
 
 /// Colours of new probes in turn: Okabe and Ito's, which colour-blind people can tell apart, then lighter
 /// ones.
