@@ -88,9 +88,6 @@ void check_heat(const RenderOptions& o, Kind kind, const Document& document) {
     }
     if (kind != Kind::image)
         throw UsageError("--heat: this output has no pixels; expected a picture's format");
-    if (o.deform == "shader")
-        throw UsageError(
-            "--heat: the shader that deforms has no colours over it; expected --deform processor");
     if (o.heat != "all")
         probe_named(document, o.heat, "--heat");
     else if (document.probes.empty())
