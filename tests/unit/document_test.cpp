@@ -52,6 +52,35 @@ TEST(Document, ProbesAreFoundById) {
     EXPECT_EQ(find_probe(document, 0), nullptr);
 }
 
+TEST(Document, UnposedIsAllButThePose) {
+    Document document = blank_document(8, 8);
+    add_probe(document, {1, 2}, {1, 2}, 0, 3);
+    Document moved = document;
+    moved.probes[0].now = {5, 6};
+    EXPECT_EQ(unposed(moved), document);
+    moved.probes[0].angle = 2;
+    EXPECT_EQ(unposed(moved), document);
+    moved.probes[0].radius = 4;
+    EXPECT_NE(unposed(moved), document);
+}
+
+TEST(Deformation, ItsWeightsKeyIsThatOfEveryPose) {
+    Document document = blank_document(8, 8);
+    add_probe(document, {1, 2}, {3, 4}, 1);
+    Deformation deformation;
+    update(deformation, document);
+    EXPECT_EQ(transformations_of(document), deformation.transformations);
+    const WeightsKey key = weights_key(deformation);
+    EXPECT_NE(key, WeightsKey{});
+    document.probes[0].now = {7, 7};
+    update(deformation, document);
+    EXPECT_EQ(weights_key(deformation), key);
+    EXPECT_EQ(transformations_of(document), deformation.transformations);
+    add_probe(document, {6, 2}, {6, 2});
+    update(deformation, document);
+    EXPECT_NE(weights_key(deformation), key);
+}
+
 TEST(Document, AnotherPictureTakesTheProbesAlong) {
     Document document = blank_document(400, 200);
     add_probe(document, {200, 100}, {300, 50}, 1, 40);
