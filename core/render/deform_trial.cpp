@@ -29,6 +29,7 @@ std::vector<float> trial_weights(const Mesh& mesh, std::span<const Motion<double
 template <class Work>
 double milliseconds(Work work) {
     using Clock = std::chrono::steady_clock;
+    glFinish();  // what was drawn before is not this work's
     const auto before = Clock::now();
     work();
     glFinish();

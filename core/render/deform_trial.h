@@ -1,7 +1,6 @@
 // Whether the processor or the vertex shader deforms: measured on a small mesh, once for a context.
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
