@@ -78,6 +78,7 @@ void DrawnMesh::set_mesh(const Mesh& mesh) {
     upload(GL_ELEMENT_ARRAY_BUFFER, triangles_, std::as_bytes(std::span(mesh.triangles)), GL_STATIC_DRAW);
     corners_ = mesh.triangles;
     edge_count_ = 0;
+    if (weight_count_ > 0) set_weights({});
     held_.clear();
     set_positions(mesh.rest);
 }
@@ -116,12 +117,15 @@ void DrawnMesh::set_weights(std::span<const float> weights) {
         throw Error(
             fmt::format("{} weights are more than the {} that this graphics driver's shaders can read",
                         weights.size(), largest));
+    weight_count_ = 0;  // should the driver have no memory
     upload_texels(weights_, weights_texture_, std::as_bytes(weights), GL_R32F);
     check_gl("uploading the weights");
+    weight_count_ = weights.size();
 }
 
 void DrawnMesh::move(std::span<const DualComplex<float>> transformations, glm::vec2 centre) {
     static_assert(sizeof(DualComplex<float>) == 4 * sizeof(float));
+    assert(weight_count_ == vertices_ * transformations.size());
     upload_texels(transformations_, transformations_texture_, std::as_bytes(transformations), GL_RGBA32F);
     const GlProgram& program = mover_.get();
     glUseProgram(program.name());

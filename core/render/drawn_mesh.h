@@ -18,17 +18,18 @@ class DrawnMesh {
   public:
     DrawnMesh();
 
-    /// At rest, until it is moved.
+    /// At rest, until it is moved. Lets go of the weights: they were another mesh's.
     void set_mesh(const Mesh& mesh);
 
-    /// As the processor moved it. now: #vertices, image pixels. From the first that is elsewhere than the
-    /// last time to the last one, vertices are handed over; none without any.
+    /// As the processor moved it. Uploads the run from the first to the last vertex that changed; nothing if
+    /// none did. now: #vertices, image pixels, or none: nothing is changed
     void set_positions(std::span<const glm::vec2> now);
 
-    /// Keeps the weights for `move`, until the next mesh. weights: #vertices x #probes, row-major. Throws
-    /// Error where the driver has no buffer that large.
+    /// Keeps the weights for `move`, until the next mesh. weights: #vertices x #probes, row-major, or none:
+    /// lets go of them. Throws Error where the driver has no buffer that large.
     void set_weights(std::span<const float> weights);
-    /// Has the vertex shader move each vertex once, by DLB. transformations: #probes, about `centre`
+    /// Has the vertex shader move each vertex once, by DLB of the weights, which must be as many as these
+    /// need. transformations: #probes, about `centre`
     void move(std::span<const DualComplex<float>> transformations, glm::vec2 centre);
 
     /// One more attribute, of `components` floats a vertex. values: #vertices x components floats
@@ -56,7 +57,7 @@ class DrawnMesh {
     Target nowhere_;
     std::vector<glm::vec2> held_;  ///< what `now_` holds; empty where that is not known
     std::vector<std::uint32_t> corners_;
-    std::size_t vertices_ = 0, edge_count_ = 0, uploaded_ = 0;
+    std::size_t vertices_ = 0, weight_count_ = 0, edge_count_ = 0, uploaded_ = 0;
 };
 
 }  // namespace probewarp

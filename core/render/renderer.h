@@ -80,8 +80,8 @@ class Renderer {
     /// `moved`, all of the picture is drawn as it is, with the cells that the mesh leaves out.
     void set_positions(std::span<const glm::vec2> now, bool moved);
     /// Has the vertex shader deform the mesh by DLB instead: by these weights, until the next ones or the
-    /// next mesh, in this pose. Shapes as deform_dlb's. Throws Error where the driver has no buffer that
-    /// large.
+    /// next mesh, in this pose. Shapes as deform_dlb's; no weights lets go of the last ones. Throws Error
+    /// where the driver has no buffer that large.
     void set_weights(std::span<const float> weights);
     void set_pose(std::span<const DualComplex<float>> transformations, glm::vec2 centre);
 
