@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <shaders/embedded.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -148,6 +149,71 @@ TEST(VertexShader, DeformsSoWithoutAFramebufferOfTheContext) {
     expect_shader_deforms_as_the_processor("egl");
 }
 
+TEST(VertexShader, GivesSmallWeightsAFinitePlaceToo) {
+    const auto context = open_context("osmesa");
+    Document document;
+    document.picture = ramp(64);
+    document.probes.push_back(new_probe(document, {10, 20}));
+    document.probes[0].now += glm::dvec2(5, 3);
+    document.probes[0].angle = 0.3;
+    Deformation deformation;
+    update(deformation, document);
+    Renderer renderer;
+    prepare(renderer, document, deformation);
+    const auto drawn = [&](float weight) {
+        renderer.set_weights(std::vector<float>(deformation.now.size(), weight));
+        renderer.set_pose(deformation.transformations, {32, 32});
+        return exported(renderer, document, deformation);
+    };
+    const Image whole = drawn(1);
+    for (const float weight : {1e-10f, 1e-18f, 1e-20f, 1e-30f, 1e-38f}) {
+        const Image small = drawn(weight);
+        // A lone probe's weight is of no account but for rounding. The ramp climbs 1024 levels a pixel, and
+        // 20 is a fiftieth of one; on the border a pixel may be covered by one of the two only.
+        int far = 0;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x)
+                for (std::size_t k = 0; k < 4; ++k)
+                    far += std::abs(pixel(whole, x, y)[k] - pixel(small, x, y)[k]) > 20;
+        EXPECT_LE(far, 16) << weight;
+    }
+}
+
+/// What all the context's buffers take.
+std::int64_t buffered_bytes() {
+    std::int64_t total = 0;
+    for (GLuint name = 1; name < 100; ++name) {  // these tests make a few, and names are given out in order
+        if (!glIsBuffer(name)) continue;
+        GLint size = 0;
+        glBindBuffer(GL_COPY_READ_BUFFER, name);
+        glGetBufferParameteriv(GL_COPY_READ_BUFFER, GL_BUFFER_SIZE, &size);
+        total += size;
+    }
+    glBindBuffer(GL_COPY_READ_BUFFER, 0);
+    return total;
+}
+
+TEST(VertexShader, KeepsNoWeightsOfTheMeshBeforeNorWhereItIsGivenNone) {
+    const auto context = open_context("osmesa");
+    Document document;
+    document.picture = ramp(64);
+    document.probes.push_back(new_probe(document, {10, 20}));
+    Deformation deformation;
+    update(deformation, document);
+    Renderer renderer;
+    prepare(renderer, document, deformation);
+    const std::int64_t without = buffered_bytes();
+    ASSERT_GT(without, 0);
+    const auto bytes = std::int64_t(weights_of(deformation).size_bytes());
+    renderer.set_weights(weights_of(deformation));
+    EXPECT_EQ(buffered_bytes(), without + bytes);
+    renderer.set_mesh(mesh_of(deformation));
+    EXPECT_EQ(buffered_bytes(), without);
+    renderer.set_weights(weights_of(deformation));
+    renderer.set_weights({});
+    EXPECT_EQ(buffered_bytes(), without);
+}
+
 TEST(DeformChoice, IsAskedForOrTheQuickerOneAndNeverTheShaderOfASoftwareRasteriser) {
     const auto by = [](DeformBy wanted, const char* renderer, std::optional<DeformTimes> times) {
         return choose_deform(wanted, renderer, times).by;
@@ -180,6 +246,30 @@ TEST(DeformTrial, MeasuresBothAndLeavesTheRenderersMeshAlone) {
     EXPECT_GT(times->shader, 0);
     EXPECT_LT(std::max(times->processor, times->shader), 1000);  // milliseconds, not seconds or less
     EXPECT_EQ(exported(renderer, document, deformation).rgba, before.rgba);
+}
+
+TEST(DeformTrial, IsNotChargedForWhatWasDrawnBefore) {
+    const auto context = open_context("osmesa");
+    Renderer renderer;
+    renderer.set_picture(upload_picture(ramp(64)->image));
+    const auto draw = [&renderer] { renderer.draw({{}, glm::dvec2(20), 64 * 20, 64 * 20}, 1); };
+    const auto milliseconds = [](auto work) {
+        const auto before = std::chrono::steady_clock::now();
+        work();
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count();
+    };
+    draw();  // compiles
+    glFinish();
+    double drawing = 1e9;
+    for (int k = 0; k < 3; ++k) drawing = std::min(drawing, milliseconds([&] { draw(), glFinish(); }));
+    DeformTrial trial;
+    while (!trial.done()) {
+        draw();
+        trial.step();
+    }
+    // A step takes a few milliseconds at most, and such a picture some tens of them: each is the least of a
+    // few, which a busy machine does not make that large.
+    EXPECT_LT(std::max(trial.times().processor, trial.times().shader), drawing / 2) << drawing;
 }
 
 TEST(Upload, IsOfTheVerticesThatMovedAndNothingElse) {
