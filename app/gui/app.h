@@ -81,7 +81,7 @@ struct App {
     Shown shown;                  ///< as it was last drawn, or tried to be
     GLuint shown_texture = 0;     ///< 0 before the first time
     PicturePtr uploaded;          ///< the picture that the renderer holds
-    WeightsKey overlaid, shaded;  ///< the weights that the renderer's overlay and its shader have
+    WeightsKey overlaid, shaded;  ///< what the renderer's overlay and its shader have; empty: none
     double deform_milliseconds = 0;
     DeformMeasurement deform_measurement;
     std::unique_ptr<BindingJob> binding_job;                  ///< null while none is under way

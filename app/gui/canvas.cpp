@@ -38,12 +38,20 @@ Shown wanted(const App& app, glm::ivec2 size) {
     return wanted;
 }
 
+/// Lets go of the shader's weights and of all that they follow from, where they are not the deformation's any
+/// more: a large mesh has hundreds of mebibytes of them, here and at the driver.
+void drop_outdated_weights(App& app, const WeightsKey& weights) {
+    if (!app.shaded.binding || (app.shown.bound && app.shaded == weights)) return;
+    app.shaded = {};
+    app.renderer->set_weights({});
+}
+
 /// Has the vertex shader move the vertices; the weights are handed over where it has not got them yet. Where
 /// it cannot, it is the processor's turn from then on.
 void shade(App& app, const WeightsKey& weights) {
     const Deformation& deformation = app.editor.deformation;
     try {
-        if (app.shaded != weights) app.renderer->set_weights(weights_of(deformation));
+        if (!app.shaded.binding) app.renderer->set_weights(weights_of(deformation));
         app.shaded = weights;
         app.renderer->set_pose(app.shown.pose, glm::vec2(centre(deformation.source.picture->image)));
     } catch (const Error&) {
@@ -62,6 +70,7 @@ void draw_shown(App& app, const Shown& before) {
     const bool new_positions = before.bound != now.bound || new_mesh || before.version != now.version ||
                                before.still != now.still || !before.compared.empty() || !before.pose.empty();
     const WeightsKey weights = weights_key(editor.deformation);
+    drop_outdated_weights(app, weights);
     if (now.bound && new_mesh) renderer.set_mesh(mesh_of(editor.deformation));
     if (!now.bound)
         renderer.set_positions({}, false);
@@ -71,7 +80,7 @@ void draw_shown(App& app, const Shown& before) {
         renderer.set_positions(shown_positions(editor), editor.deformation.moved);
     if (before.bound != now.bound || new_mesh || app.overlaid != weights || before.overlay != now.overlay)
         renderer.set_overlay(overlay_vertices(editor, now.overlay), overlay_style(now.overlay));
-    app.overlaid = weights;
+    app.overlaid = now.overlay.weights == ShownWeights::none ? WeightsKey{} : weights;
     View view;
     view.scale = glm::dvec2(now.view.zoom);
     view.origin = -now.view.corner / now.view.zoom;
