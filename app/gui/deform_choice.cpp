@@ -26,40 +26,50 @@ void advance_trial(App& app) {
 }
 
 DeformChoice deform_choice(const App& app) {
-    return choose_deform(app.editor.deform_by, app.renderer_label, app.deform_measurement.times);
+    const DeformChoice choice =
+        choose_deform(app.editor.deform_by, app.renderer_label, app.deform_measurement.times);
+    if (choice.by == DeformBy::processor) return choice;
+    if (!find_blend_method(app.editor.document.blend)->summed)
+        return {DeformBy::processor, "the vertex shader blends by DLB only"};
+    if (app.editor.comparison)
+        return {DeformBy::processor, "the vertex shader cannot show two blends at once"};
+    return choice;
 }
 
 bool is_shaded(const App& app) {
     const Editor& editor = app.editor;
     const bool drags = editor.gesture && (editor.gesture->kind == Gesture::Kind::move ||
                                           editor.gesture->kind == Gesture::Kind::turn);
-    if (!drags || !find_blend_method(editor.document.blend)->summed || editor.comparison) return false;
-    return is_bound(editor.deformation.binding.get(), editor.document) &&
-           unposed(editor.deformation.source) == unposed(editor.document) &&
-           deform_choice(app).by == DeformBy::shader;
+    return drags && deform_choice(app).by == DeformBy::shader &&
+           is_bound(editor.deformation.binding.get(), editor.document) &&
+           unposed(editor.deformation.source) == unposed(editor.document);
 }
 
 std::string deform_facts(const App& app) {
     const bool shader = deform_choice(app).by == DeformBy::shader;
     const char* const by = shader ? "shader" : "processor";
+    const std::string text = is_shaded(app)
+                                 ? "deform by shader"
+                                 : fmt::format("deform {:.2f} ms, drags by {}", app.deform_milliseconds, by);
     const auto& times = app.deform_measurement.times;
-    if (!times) return fmt::format("by {}", by);
-    return fmt::format("by {} ({:.2f} ms; {} {:.2f} ms)", by, shader ? times->shader : times->processor,
+    if (!times) return text;
+    return fmt::format("{} ({:.2f} ms; {} {:.2f} ms)", text, shader ? times->shader : times->processor,
                        shader ? "processor" : "shader", shader ? times->processor : times->shader);
 }
 
 std::string deform_explanation(const App& app) {
     const DeformChoice choice = deform_choice(app);
     const auto& times = app.deform_measurement.times;
-    std::string text = fmt::format("While a probe is dragged the {}: {}. The menu View has the choice.",
-                                   choice.by == DeformBy::shader ? "vertex shader moves what blends by DLB"
-                                                                 : "processor moves the vertices",
-                                   choice.why);
+    std::string text = is_shaded(app)
+                           ? std::string("The vertex shader moves the vertices.")
+                           : fmt::format("The processor moved the vertices in {:.2f} ms, the last time.",
+                                         app.deform_milliseconds);
+    text += fmt::format("\nWhile a probe is dragged the {} moves them: {}. The menu View has the choice.",
+                        choice.by == DeformBy::shader ? "vertex shader" : "processor", choice.why);
     if (times)
         text += fmt::format(
-            "\nMeasured once, a step of a drag of {} vertices by {} probes: processor {:.3f} ms, vertex "
-            "shader "
-            "{:.3f} ms.",
+            "\nMeasured once, a step of a drag of {} vertices by {} probes, blended by DLB: processor {:.3f} "
+            "ms, vertex shader {:.3f} ms.",
             DeformTrial::vertices, DeformTrial::probes, times->processor, times->shader);
     return text;
 }

@@ -184,12 +184,13 @@ std::string facts(const App& app) {
     const Editor& editor = app.editor;
     if (!has_picture(editor)) return app.renderer_label;
     const Image& image = editor.document.picture->image;
-    std::string text = fmt::format("{} × {} · {} vertices · deform {:.2f} ms {} · {}", image.width,
-                                   image.height, grouped(editor.deformation.now.size()),
-                                   app.deform_milliseconds, deform_facts(app), app.renderer_label);
+    std::string text =
+        fmt::format("{} × {} · {} vertices · {} · {}", image.width, image.height,
+                    grouped(editor.deformation.now.size()), deform_facts(app), app.renderer_label);
     if (app.binding_job && ImGui::GetTime() - app.binding_job->since > 0.1)
         text = "working out the weights… · " + text;
-    if (editor.deformation.cancelled > 0)
+    // Nobody counts what the shader could not blend.
+    if (editor.deformation.cancelled > 0 && !is_shaded(app))
         text = fmt::format("no blend at {} vertices · {}", grouped(editor.deformation.cancelled), text);
     return text;
 }
