@@ -240,6 +240,10 @@ TEST(DeformTrial, MeasuresBothAndLeavesTheRenderersMeshAlone) {
     Renderer renderer;
     prepare(renderer, document, deformation);
     const Image before = exported(renderer, document, deformation);
+    // What the renderer draws into holds another picture now, in case that it draws nothing afterwards.
+    renderer.set_positions(mesh_of(deformation).rest, false);
+    ASSERT_NE(exported(renderer, document, deformation).rgba, before.rgba);
+    renderer.set_positions(deformation.now, deformation.moved);
     const auto times = measured_deform_times();
     ASSERT_TRUE(times);
     EXPECT_GT(times->processor, 0);
