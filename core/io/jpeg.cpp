@@ -324,12 +324,6 @@ void flatten(const Sample* rgba, std::span<std::uint8_t> rgbx, Colour background
                                        (full * scale));
 }
 
-bool is_opaque(std::span<const std::uint8_t> rgba) {
-    std::uint8_t all = 255;
-    for (std::size_t i = 3; i < rgba.size(); i += 4) all &= rgba[i];
-    return all == 255;
-}
-
 /// The row as libjpeg takes it: an opaque one of 8 bits as it is, others flattened in `room`. Both: width x 4
 const std::uint8_t* rgbx_row(std::span<const std::uint8_t> rgba, std::span<std::uint8_t> room,
                              Colour background) {

@@ -13,8 +13,6 @@
 
 #include "io/deflate_strip.h"
 #include "io/formats.h"
-#include "io/image_encoding.h"
-#include "io/jpeg_encoder.h"
 #include "io/png_filter.h"
 
 namespace probewarp {
@@ -171,18 +169,6 @@ void make_strip(const PngStripRows& rows, const Effort& effort, PngStrip& strip)
     strip.done = true;
 }
 
-/// Whether the alpha of RGBA samples is full everywhere.
-template <class Sample>
-bool is_opaque(const std::vector<Sample>& rgba) {
-    Sample all = std::numeric_limits<Sample>::max();
-    for (std::size_t i = 3; i < rgba.size(); i += 4) all = Sample(all & rgba[i]);
-    return all == std::numeric_limits<Sample>::max();
-}
-
-bool is_opaque(const Image& image) {
-    return std::visit([](const auto& rgba) { return is_opaque(rgba); }, image.rgba);
-}
-
 }  // namespace
 
 // ---- all strips ----
@@ -296,23 +282,6 @@ void put_resolution(std::vector<std::byte>& to, const std::optional<Resolution>&
     put_chunk(to, "pHYs", data);
 }
 
-/// What stands before the strips.
-std::vector<std::byte> beginning(const PngShape& shape, Bytes icc,
-                                 const std::optional<Resolution>& resolution) {
-    std::vector<std::byte> begin;
-    put_text(begin, "\x89PNG\r\n\x1a\n");
-    put_header(begin, shape);
-    put_profile(begin, icc);
-    put_resolution(begin, resolution);
-    return begin;
-}
-
-FileParts rest_of(PngRows& rows) {
-    FileParts parts = rows.finish();
-    put_chunk(parts.emplace_back(), "IEND", {});
-    return parts;
-}
-
 std::vector<std::byte> joined(std::vector<std::byte> all, const FileParts& parts) {
     std::size_t size = all.size();
     for (const auto& part : parts) size += part.size();
@@ -321,104 +290,38 @@ std::vector<std::byte> joined(std::vector<std::byte> all, const FileParts& parts
     return all;
 }
 
-PngShape shape_of(const Image& image, bool transparent) {
-    return {image.width, image.height, image.bits(), 4, transparent ? 4 : 3};
-}
-
 /// All of the samples, which the caller keeps.
 PngBand band_of(const std::byte* samples, int rows) {
     return {std::shared_ptr<const std::byte>(std::shared_ptr<void>(), samples), rows};
 }
 
-/// Rows that the file may be the last to need.
-PngBand band_of(Image image) {
-    const int rows = image.height;
-    const auto kept = std::make_shared<const Image>(std::move(image));
-    return {std::shared_ptr<const std::byte>(kept, pixel_bytes(*kept).data()), rows};
-}
-
 }  // namespace
 
-ImageEncoding::ImageEncoding(const ImageFormat& format, const Image& like, const EncodeOptions& options,
-                             bool transparent)
-    : format_(format), options_(options), transparent_(transparent) {
-    whole_.width = like.width;
-    whole_.height = like.height;
-    whole_.icc = like.icc;
-    whole_.resolution = like.resolution;
-    if (like.bits() == 16) whole_.rgba = std::vector<std::uint16_t>();
-    if (format.encode == &encode_png)
-        png_ = std::make_unique<PngRows>(shape_of(whole_, transparent), options.compression);
-    else if (format.encode == &encode_jpeg)
-        jpeg_ = std::make_unique<JpegRows>(whole_, options);
-    else
-        std::visit([&](auto& rgba) { rgba.reserve(std::size_t(like.width) * std::size_t(like.height) * 4); },
-                   whole_.rgba);
+PngShape png_shape(const Image& image, bool transparent) {
+    return {image.width, image.height, image.bits(), 4, transparent ? 4 : 3};
 }
 
-ImageEncoding::~ImageEncoding() {
-    try {
-        jpeg_task_.wait();
-    } catch (...) {  // of no use to anybody any more
-    }
+std::vector<std::byte> png_beginning(const PngShape& shape, Bytes icc,
+                                     const std::optional<Resolution>& resolution) {
+    std::vector<std::byte> begin;
+    put_text(begin, "\x89PNG\r\n\x1a\n");
+    put_header(begin, shape);
+    put_profile(begin, icc);
+    put_resolution(begin, resolution);
+    return begin;
 }
 
-void ImageEncoding::add(Image band) {
-    assert(band.width == whole_.width && band.bits() == whole_.bits());
-    rows_ += band.height;
-    if (jpeg_) {
-        jpeg_task_.wait();
-        return jpeg_task_.run(
-            [this, rows = std::make_shared<const Image>(std::move(band))] { jpeg_->add(*rows); });
-    }
-    if (png_) {
-        opaque_ = opaque_ && is_opaque(band);
-        return png_->add(band_of(std::move(band)));
-    }
-    std::visit(
-        [&](auto& rgba) {
-            const auto& rows = std::get<std::decay_t<decltype(rgba)>>(band.rgba);
-            rgba.insert(rgba.end(), rows.begin(), rows.end());
-        },
-        whole_.rgba);
-}
-
-bool ImageEncoding::fits() const {
-    if (!png_) return true;
-    return transparent_ ? !opaque_ || rows_ < whole_.height : opaque_;
-}
-
-FileParts ImageEncoding::take() {
-    if (!png_) return {};
-    FileParts parts = png_->take();
-    if (!parts.empty()) add_beginning(parts);
+FileParts png_rest(PngRows& rows) {
+    FileParts parts = rows.finish();
+    put_chunk(parts.emplace_back(), "IEND", {});
     return parts;
-}
-
-FileParts ImageEncoding::finish() {
-    assert(rows_ == whole_.height && fits());
-    jpeg_task_.wait();
-    FileParts parts;
-    if (png_) {
-        parts = rest_of(*png_);
-        add_beginning(parts);
-    } else {
-        parts.push_back(jpeg_ ? jpeg_->finish() : format_.encode(whole_, options_));
-    }
-    return parts;
-}
-
-void ImageEncoding::add_beginning(FileParts& parts) {
-    if (begun_) return;
-    begun_ = true;
-    parts.insert(parts.begin(), beginning(shape_of(whole_, transparent_), whole_.icc, whole_.resolution));
 }
 
 std::vector<std::byte> encode_png(const Image& image, const EncodeOptions& options) {
-    const PngShape shape = shape_of(image, !is_opaque(image));
+    const PngShape shape = png_shape(image, has_alpha(image));
     PngRows rows(shape, options.compression);
     rows.add(band_of(pixel_bytes(image).data(), image.height));
-    return joined(beginning(shape, image.icc, image.resolution), rest_of(rows));
+    return joined(png_beginning(shape, image.icc, image.resolution), png_rest(rows));
 }
 
 std::vector<std::byte> encode_png_samples(int width, int height, int channels,
@@ -426,7 +329,7 @@ std::vector<std::byte> encode_png_samples(int width, int height, int channels,
     const PngShape shape{width, height, 16, channels, channels};
     PngRows rows(shape, Compression::standard);
     rows.add(band_of(std::as_bytes(grey).data(), height));
-    return joined(beginning(shape, {}, {}), rest_of(rows));
+    return joined(png_beginning(shape, {}, {}), png_rest(rows));
 }
 
 }  // namespace probewarp

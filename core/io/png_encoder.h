@@ -81,4 +81,14 @@ class PngRows {
     tbb::task_group tasks_;
 };
 
+/// Of an image's file, with its alpha where `transparent`.
+PngShape png_shape(const Image& image, bool transparent);
+
+/// What stands before the strips.
+std::vector<std::byte> png_beginning(const PngShape& shape, Bytes icc,
+                                     const std::optional<Resolution>& resolution);
+
+/// What is left of the file. Throws as PngRows::finish.
+FileParts png_rest(PngRows& rows);
+
 }  // namespace probewarp

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
-#include <type_traits>
 
 namespace probewarp {
 
@@ -21,15 +20,27 @@ std::array<int, 4> pixel(const Image& image, int x, int y) {
         image.rgba);
 }
 
+namespace {
+
+template <class Sample>
+bool all_opaque(std::span<const Sample> rgba) {
+    constexpr std::size_t at_once = 4096;  // without looking whether it is decided
+    constexpr Sample full = std::numeric_limits<Sample>::max();
+    for (; !rgba.empty(); rgba = rgba.subspan(std::min(at_once, rgba.size()))) {
+        Sample all = full;
+        for (std::size_t i = 3; i < std::min(at_once, rgba.size()); i += 4) all = Sample(all & rgba[i]);
+        if (all != full) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+bool is_opaque(std::span<const std::uint8_t> rgba) { return all_opaque(rgba); }
+bool is_opaque(std::span<const std::uint16_t> rgba) { return all_opaque(rgba); }
+
 bool has_alpha(const Image& image) {
-    return std::visit(
-        [](const auto& samples) {
-            using Sample = typename std::decay_t<decltype(samples)>::value_type;
-            for (std::size_t i = 3; i < samples.size(); i += 4)
-                if (samples[i] != std::numeric_limits<Sample>::max()) return true;
-            return false;
-        },
-        image.rgba);
+    return std::visit([](const auto& samples) { return !is_opaque(std::span(samples)); }, image.rgba);
 }
 
 }  // namespace probewarp

@@ -44,6 +44,10 @@ std::span<const std::byte> pixel_bytes(const Image& image);
 /// The four samples of pixel (x, y), in the image's own depth. Requires a pixel inside.
 std::array<int, 4> pixel(const Image& image, int x, int y);
 
+/// Whether the alpha of RGBA samples is full everywhere.
+bool is_opaque(std::span<const std::uint8_t> rgba);
+bool is_opaque(std::span<const std::uint16_t> rgba);
+
 /// Whether any pixel is not fully opaque.
 bool has_alpha(const Image& image);
 

@@ -94,12 +94,9 @@ Image half_size(const Image& image) {
 bool is_opaque(const Image& image, int first_row, int rows) {
     return std::visit(
         [&](const auto& samples) {
-            using Sample = typename std::decay_t<decltype(samples)>::value_type;
-            const std::size_t row = std::size_t(image.width) * 4, first = std::size_t(first_row) * row;
-            Sample all = std::numeric_limits<Sample>::max();
-            for (std::size_t i = first + 3; i < first + std::size_t(rows) * row; i += 4)
-                all = Sample(all & samples[i]);
-            return all == std::numeric_limits<Sample>::max();
+            const std::size_t row = std::size_t(image.width) * 4;
+            return probewarp::is_opaque(
+                std::span(samples).subspan(std::size_t(first_row) * row, std::size_t(rows) * row));
         },
         image.rgba);
 }

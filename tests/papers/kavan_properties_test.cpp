@@ -49,8 +49,8 @@ TEST(KavanTable1, FlopsAreAConstantAndSoManyEach) {
 TEST(KavanTable1, FlopsAreTheFormulasByHand) {
     // Each a conversion (61), 16 products and 16 sums; the first is not summed.
     EXPECT_EQ(method("linear").price.flops(), (Formula{-16, 93}));
-    // Each 8 products, 8 sums, a sum of weights and a division by it; less the first's 9 sums, the guard against cancelling 9,
-    // the norm 18, its inverse 3, their product 16, the conversion 61.
+    // Each 8 products, 8 sums, a sum of weights and a division by it; less the first's 9 sums, the guard
+    // against cancelling 9, the norm 18, its inverse 3, their product 16, the conversion 61.
     EXPECT_EQ(method("DLB").price.flops(), (Formula{98, 18}));
     // DLB, and each a conversion, 4 products and 4 sums; the first is not summed.
     EXPECT_EQ(method("decomposition").price.flops(), (Formula{98 - 4, 18 + 69}));

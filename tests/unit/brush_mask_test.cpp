@@ -9,11 +9,11 @@
 namespace probewarp {
 namespace {
 
+using testing::BrushScene;
 using testing::degrees;
 using testing::expect_always;
 using testing::real;
 using testing::round_brush;
-using testing::BrushScene;
 using testing::strength_at;
 using testing::whole;
 

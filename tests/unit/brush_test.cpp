@@ -9,10 +9,10 @@
 namespace probewarp {
 namespace {
 
+using testing::BrushScene;
 using testing::expect_always;
 using testing::real;
 using testing::round_brush;
-using testing::BrushScene;
 using testing::strength_at;
 using testing::whole;
 
