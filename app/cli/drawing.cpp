@@ -1,11 +1,9 @@
 #include "cli/drawing.h"
 
 #include <fmt/format.h>
-#include <tbb/info.h>
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 
 #include "cli/arguments.h"
@@ -57,21 +55,7 @@ void Output::finish() {
     });
 }
 
-namespace {
-
-/// A software rasteriser's threads are as many as there are cores, and would take turns with the encoder's:
-/// on two cores one draws, which this thread does best itself, and one encodes. LP_NUM_THREADS, where it is
-/// set, is heeded.
-std::unique_ptr<Context> open_beside_the_encoder(const std::string& backend) {
-    const int cores = tbb::info::default_concurrency();
-    setenv("LP_NUM_THREADS", std::to_string(cores <= 2 ? 0 : cores / 2).c_str(), 0);
-    return open_context(backend);
-}
-
-}  // namespace
-
-Drawer::Drawer(const RenderPlan& plan)
-    : plan_(plan), context_(open_beside_the_encoder(plan.options.backend)) {}
+Drawer::Drawer(const RenderPlan& plan) : plan_(plan), context_(open_context(plan.options.backend)) {}
 
 namespace {
 

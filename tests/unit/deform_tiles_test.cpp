@@ -52,6 +52,16 @@ double share_of(const WeighedScene& scene, std::size_t vertex) {
     return std::abs(s0) / total;
 }
 
+/// How far the quick function may be from the plain one; image pixels. As for Deform's own test: floats of up
+/// to 8192 pixels, their rounding magnified where the sum is short, twice four times over.
+double allowed_at(double share) { return std::max(0.01, 8192 * 0x1p-21 / (share * share)); }
+
+MovedVertices by_dragging(const WeighedScene& scene, const WeightTiles& tiles, const OthersSum& others) {
+    MovedVertices moved{std::vector<glm::vec2>(scene.rest.size()), 0};
+    moved.cancelled = deform_dlb_dragged(tiles, others, scene.rest, scene.pose(), moved.now);
+    return moved;
+}
+
 TEST(DeformTiles, IsThePlainFunctionUpToRounding) {
     with_every_target([] {
         expect_always("any number of vertices, 1 to 70 probes, many turns", [] {
@@ -59,11 +69,7 @@ TEST(DeformTiles, IsThePlainFunctionUpToRounding) {
             const MovedVertices plain = plainly(scene), quick = by_tiles(scene);
             RC_ASSERT(quick.cancelled == plain.cancelled);
             for (std::size_t v = 0; v < scene.rest.size(); ++v) {
-                // As for Deform's own test: floats of up to 8192 pixels, their rounding magnified where the
-                // sum is short, twice four times over.
-                const double share = share_of(scene, v);
-                const double allowed = std::max(0.01, 8192 * 0x1p-21 / (share * share));
-                RC_ASSERT(apart(plain.now[v], quick.now[v]) <= allowed);
+                RC_ASSERT(apart(plain.now[v], quick.now[v]) <= allowed_at(share_of(scene, v)));
             }
         });
     });
@@ -178,15 +184,10 @@ TEST(DeformTiles, ADraggedProbeIsWhatAllProbesAreUpToRounding) {
             const std::complex<double> rest = scene.motions[probe].rest;
             scene.motions[probe] = motion(*angle(5), rest, rest + *testing::point<double>(1000));
             scene.transformations[probe] = cast<float>(scene.motions[probe].p);
-            const MovedVertices plain = plainly(scene);
-            MovedVertices moved{std::vector<glm::vec2>(scene.rest.size()), 0};
-            moved.cancelled = deform_dlb_dragged(tiles, others, scene.rest, scene.pose(), moved.now);
+            const MovedVertices plain = plainly(scene), moved = by_dragging(scene, tiles, others);
             RC_ASSERT(moved.cancelled == plain.cancelled);
-            for (std::size_t v = 0; v < scene.rest.size(); ++v) {
-                const double share = share_of(scene, v);  // as above
-                const double allowed = std::max(0.01, 8192 * 0x1p-21 / (share * share));
-                RC_ASSERT(apart(plain.now[v], moved.now[v]) <= allowed);
-            }
+            for (std::size_t v = 0; v < scene.rest.size(); ++v)
+                RC_ASSERT(apart(plain.now[v], moved.now[v]) <= allowed_at(share_of(scene, v)));
         });
     });
 }
@@ -207,15 +208,12 @@ TEST(DeformTiles, ADraggedProbeMayCancelTheOthersOrHaveNoWeight) {
             const OthersSum others = sum_others(tiles, scene.pose(), 1);
             scene.motions[1] = motion<double>(*rc::gen::element(360.0, 359.0, 90.0) * degrees, {500, 20}, 0);
             scene.transformations[1] = cast<float>(scene.motions[1].p);
-            const MovedVertices plain = plainly(scene);
-            MovedVertices moved{std::vector<glm::vec2>(scene.rest.size()), 0};
-            moved.cancelled = deform_dlb_dragged(tiles, others, scene.rest, scene.pose(), moved.now);
+            const MovedVertices plain = plainly(scene), moved = by_dragging(scene, tiles, others);
             RC_ASSERT(moved.cancelled == plain.cancelled);
             for (std::size_t v = 0; v < scene.rest.size(); ++v) {
-                const double share = share_of(scene, v);  // as above
-                const double allowed = std::max(0.01, 8192 * 0x1p-21 / (share * share));
+                const double share = share_of(scene, v);
                 const bool same = plain.now[v] == moved.now[v];
-                RC_ASSERT(same || (share >= 1e-6 && apart(plain.now[v], moved.now[v]) <= allowed));
+                RC_ASSERT(same || (share >= 1e-6 && apart(plain.now[v], moved.now[v]) <= allowed_at(share)));
             }
         });
     });
