@@ -8,6 +8,7 @@
 
 #include "cli/arguments.h"
 #include "render/overlay.h"
+#include "render/rasterizer.h"
 
 namespace probewarp {
 
@@ -55,8 +56,6 @@ void Output::finish() {
     });
 }
 
-Drawer::Drawer(const RenderPlan& plan) : plan_(plan), context_(open_context(plan.options.backend)) {}
-
 namespace {
 
 /// Lays the heat map of the weights over the picture, where it is asked for.
@@ -69,6 +68,17 @@ void show_heat(Renderer& renderer, const Deformation& deformation, const RenderO
     renderer.set_overlay(weight_overlay(deformation, probe), style);
 }
 
+int wanted_levels(const Document& document, const Deformation& deformation, const ExportSettings& settings) {
+    return Footprints(deformation, export_view(document, deformation, settings)).wanted_levels();
+}
+
+/// Whether the processor draws it, which needs no context and is quicker than a graphics driver without a
+/// card: only what has nothing to blend.
+bool drawn_by_processor(const RenderPlan& plan, const Image& image) {
+    return plan.options.backend == "auto" && plan.options.deform != "shader" && !plan.settings.overlay &&
+           plan.settings.samples == 1 && !has_alpha(image);
+}
+
 /// The image; what is left has its size and the rest, but no pixels.
 Image pixels_taken_from(Image& image) {
     Image taken = image.bits() == 16 ? Image{image.width, image.height, std::vector<std::uint16_t>(), {}, {}}
@@ -79,38 +89,49 @@ Image pixels_taken_from(Image& image) {
 
 }  // namespace
 
-/// Hands the document's picture and deformed mesh to the renderer.
+/// Hands the document's picture and deformed mesh to the renderer, which is made where there is none.
 void Drawer::hold(const Document& document, const Deformation& deformation) {
-    const View view = export_view(document, deformation, plan_.settings);
-    const int levels = Footprints(deformation, view).wanted_levels();
+    const int levels = wanted_levels(document, deformation, plan_.settings);
+    if (!offscreen_) offscreen_.emplace(plan_.options.backend);
+    Renderer& renderer = offscreen_->renderer;
     Picture& picture = *std::const_pointer_cast<Picture>(document.picture);
     std::vector<std::byte>().swap(picture.original);
-    renderer_.set_picture(upload_picture(pixels_taken_from(picture.image), levels));
-    renderer_.set_mesh(mesh_of(deformation));
+    renderer.set_picture(upload_picture(pixels_taken_from(picture.image), levels));
+    renderer.set_mesh(mesh_of(deformation));
     if (plan_.options.deform == "shader") {
-        renderer_.set_weights(weights_of(deformation));
-        renderer_.set_pose(deformation.transformations, glm::vec2(centre(picture.image)));
+        renderer.set_weights(weights_of(deformation));
+        renderer.set_pose(deformation.transformations, glm::vec2(centre(picture.image)));
     } else {
-        renderer_.set_positions(deformation.now, deformation.moved);
+        renderer.set_positions(deformation.now, deformation.moved);
     }
-    show_heat(renderer_, deformation, plan_.options);
+    show_heat(renderer, deformation, plan_.options);
 }
 
 std::unique_ptr<ImageEncoding> Drawer::draw(const Document& document, const Deformation& deformation,
                                             Output& output, const std::function<void(double)>& show) {
-    hold(document, deformation);
-    ExportJob job(renderer_, document, deformation, plan_.settings);
-    for (bool transparent = job.may_be_transparent();; transparent = !transparent) {
-        auto encoding = std::make_unique<ImageEncoding>(plan_.format, job.like(), plan_.encode, transparent);
-        while (!job.done() && encoding->fits()) {
-            encoding->add(job.next_band());
-            output.write(encoding->take());
-            show(job.progress());
+    const auto by = [&](PictureDrawer& drawer) {
+        ExportJob job(drawer, document, deformation, plan_.settings);
+        for (bool transparent = job.may_be_transparent();; transparent = !transparent) {
+            auto encoding =
+                std::make_unique<ImageEncoding>(plan_.format, job.like(), plan_.encode, transparent);
+            while (!job.done() && encoding->fits()) {
+                encoding->add(job.next_band());
+                output.write(encoding->take());
+                show(job.progress());
+            }
+            if (encoding->fits()) return encoding;
+            job.restart();
+            output.restart();
         }
-        if (encoding->fits()) return encoding;
-        job.restart();
-        output.restart();
+    };
+    const Image& image = document.picture->image;
+    if (drawn_by_processor(plan_, image)) {
+        Rasterizer rasterizer(image, wanted_levels(document, deformation, plan_.settings));
+        rasterizer.set_mesh(mesh_of(deformation), deformation.now, deformation.moved);
+        return by(rasterizer);
     }
+    hold(document, deformation);
+    return by(offscreen_->renderer);
 }
 
 }  // namespace probewarp

@@ -14,6 +14,7 @@
 #include "io/image_encoding.h"
 #include "render/context.h"
 #include "render/export.h"
+#include "render/renderer.h"
 
 namespace probewarp {
 
@@ -54,11 +55,20 @@ class Output {
     FileParts kept_;                  ///< for that
 };
 
+/// An offscreen context and what draws in it.
+struct OffscreenRenderer {
+    std::unique_ptr<Context> context;  // first in, last out
+    Renderer renderer;
+
+    /// Throws Error where there is no context.
+    explicit OffscreenRenderer(const std::string& backend) : context(open_context(backend)) {}
+};
+
 /// Draws one document after the other, all on the thread that made it.
 class Drawer {
   public:
-    /// The plan must outlive it. Throws Error where there is no context.
-    explicit Drawer(const RenderPlan& plan);
+    /// The plan must outlive it.
+    explicit Drawer(const RenderPlan& plan) : plan_(plan) {}
 
     /// Draws, while what is drawn already is being encoded and written; finish() of what it returns is still
     /// to be written. So that less is there at once, the document's picture has lost its file's bytes and its
@@ -71,8 +81,7 @@ class Drawer {
     void hold(const Document& document, const Deformation& deformation);
 
     const RenderPlan& plan_;
-    std::unique_ptr<Context> context_;  // first in, last out
-    Renderer renderer_;
+    std::optional<OffscreenRenderer> offscreen_;  ///< once there was need of it
 };
 
 }  // namespace probewarp

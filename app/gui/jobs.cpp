@@ -6,6 +6,7 @@
 
 #include "gui/app.h"
 #include "gui/widgets.h"
+#include "render/mipmaps.h"
 
 namespace probewarp {
 

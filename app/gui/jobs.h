@@ -11,6 +11,7 @@
 
 #include "model/document.h"
 #include "render/export.h"
+#include "render/picture_texture.h"
 
 namespace probewarp {
 

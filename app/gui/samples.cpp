@@ -8,6 +8,7 @@
 #include "gui/app.h"
 #include "gui/widgets.h"
 #include "io/project.h"
+#include "render/mipmaps.h"
 
 namespace probewarp {
 

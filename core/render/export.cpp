@@ -6,6 +6,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "model/error.h"
+
 namespace probewarp {
 
 namespace {
@@ -98,9 +100,9 @@ Image blank(const Image& like, int rows) {
 
 }  // namespace
 
-ExportJob::ExportJob(Renderer& renderer, const Document& document, const Deformation& deformation,
+ExportJob::ExportJob(PictureDrawer& drawer, const Document& document, const Deformation& deformation,
                      const ExportSettings& settings)
-    : renderer_(renderer),
+    : drawer_(drawer),
       settings_(settings),
       view_(export_view(document, deformation, settings)),
       footprints_(deformation, view_) {
@@ -111,7 +113,7 @@ ExportJob::ExportJob(Renderer& renderer, const Document& document, const Deforma
     like_.icc = original.icc;
     like_.resolution = original.resolution;
     if (original.bits() == 16) like_.rgba = std::vector<std::uint16_t>();
-    may_be_transparent_ = !settings.background && !(renderer.is_opaque() && covers(deformation, view_));
+    may_be_transparent_ = !settings.background && !(drawer.is_opaque() && covers(deformation, view_));
     tile_ = {layer_width / settings.samples, layer_height / settings.samples};
     tiles_ = {(view_.width + tile_[0] - 1) / tile_[0], (view_.height + tile_[1] - 1) / tile_[1]};
 }
@@ -122,9 +124,9 @@ void ExportJob::draw_tile(Image& into, int first_row) {
     tile.origin += glm::dvec2(left, top) / view_.scale;
     tile.width = std::min(tile_[0], view_.width - left);
     tile.height = std::min(tile_[1], view_.height - top);
-    renderer_.render(into, left, top - first_row, tile,
-                     {settings_.samples, settings_.background, settings_.overlay},
-                     footprints_.runs_within(tile));
+    drawer_.render(into, left, top - first_row, tile,
+                   {settings_.samples, settings_.background, settings_.overlay},
+                   footprints_.runs_within(tile));
     ++next_;
 }
 

@@ -6,7 +6,7 @@
 
 #include "model/deformation.h"
 #include "render/footprints.h"
-#include "render/renderer.h"
+#include "render/picture_drawer.h"
 
 namespace probewarp {
 
@@ -24,18 +24,18 @@ struct ExportSettings {
     int samples = 1;  ///< samples x samples a pixel, in [1, max_samples]
     Canvas canvas = Canvas::image;
     std::optional<Colour> background;  ///< empty: as transparent as the picture is
-    bool overlay = false;              ///< with the renderer's overlay over the picture
+    bool overlay = false;              ///< with the drawer's overlay over the picture
 };
 
 /// What the whole export shows. Throws Error where it would be larger than a picture may be.
 View export_view(const Document& document, const Deformation& deformation, const ExportSettings& settings);
 
-/// One export under way: the renderer must hold the document's picture and deformed mesh, and be left alone
+/// One export under way: the drawer must hold the document's picture and deformed mesh, and be left alone
 /// until done. Tiles keep each step short and the size unlimited by textures.
 class ExportJob {
   public:
     /// Looks at the size, depth, profile and resolution of the document's picture, not at its pixels.
-    ExportJob(Renderer& renderer, const Document& document, const Deformation& deformation,
+    ExportJob(PictureDrawer& drawer, const Document& document, const Deformation& deformation,
               const ExportSettings& settings);
 
     bool done() const { return next_ == tiles_[0] * tiles_[1]; }
@@ -59,7 +59,7 @@ class ExportJob {
   private:
     void draw_tile(Image& into, int first_row);
 
-    Renderer& renderer_;
+    PictureDrawer& drawer_;
     ExportSettings settings_;
     View view_;
     Image like_, whole_;

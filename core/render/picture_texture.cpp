@@ -3,93 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cassert>
-#include <limits>
-#include <type_traits>
+
+#include "render/mipmaps.h"
 
 namespace probewarp {
 
 namespace {
-
-struct Extent {
-    int width, height;
-};
-
-Extent half(Extent of) { return {std::max(1, of.width / 2), std::max(1, of.height / 2)}; }
-
-/// The alpha-weighted mean of four pixels.
-template <class Sample>
-std::array<Sample, 4> mean(const std::array<const Sample*, 4>& pixels) {
-    std::uint64_t weighted[3]{}, plain[3]{}, alpha = 0;
-    for (const Sample* p : pixels) {
-        for (int k = 0; k < 3; ++k) weighted[k] += std::uint64_t(p[k]) * p[3], plain[k] += p[k];
-        alpha += p[3];
-    }
-    std::array<Sample, 4> q;
-    for (std::size_t k = 0; k < 3; ++k)
-        q[k] = Sample(alpha > 0 ? (weighted[k] + alpha / 2) / alpha : (plain[k] + 2) / 4);
-    q[3] = Sample((alpha + 2) / 4);
-    return q;
-}
-
-/// Likewise, of opaque ones: the same, without the long divisions.
-template <class Sample>
-std::array<Sample, 4> opaque_mean(const std::array<const Sample*, 4>& pixels) {
-    std::array<Sample, 4> q;
-    for (std::size_t k = 0; k < 4; ++k)
-        q[k] = Sample((std::uint32_t(pixels[0][k]) + pixels[1][k] + pixels[2][k] + pixels[3][k] + 2) / 4);
-    return q;
-}
-
-/// from: `size`, to: half(size); both may begin at the same place, for no pixel is written before those that
-/// it and the ones before it are made of have been read.
-template <class Sample>
-void halve(const Sample* from, Extent size, Sample* to) {
-    const Extent smaller = half(size);
-    const std::size_t row = std::size_t(size.width) * 4;
-    for (int y = 0; y < smaller.height; ++y) {
-        const Sample* above = from + std::size_t(2 * y) * row;
-        const Sample* below = from + std::size_t(std::min(2 * y + 1, size.height - 1)) * row;
-        for (int x = 0; x < smaller.width; ++x, to += 4) {
-            const std::size_t left = std::size_t(2 * x) * 4,
-                              right = std::size_t(std::min(2 * x + 1, size.width - 1)) * 4;
-            const std::array<const Sample*, 4> four{above + left, above + right, below + left, below + right};
-            const auto alpha = four[0][3] & four[1][3] & four[2][3] & four[3][3];
-            const auto q = alpha == std::numeric_limits<Sample>::max() ? opaque_mean(four) : mean(four);
-            std::copy(q.begin(), q.end(), to);
-        }
-    }
-}
-
-/// Half the size, in the same memory.
-void halve(Image& image) {
-    const Extent size{image.width, image.height};
-    image.width = half(size).width;
-    image.height = half(size).height;
-    std::visit(
-        [&](auto& samples) {
-            halve(samples.data(), size, samples.data());
-            samples.resize(std::size_t(image.width) * std::size_t(image.height) * 4);
-        },
-        image.rgba);
-}
-
-Image half_size(const Image& image) {
-    Image next;
-    next.width = half({image.width, image.height}).width;
-    next.height = half({image.width, image.height}).height;
-    std::visit(
-        [&](const auto& from) {
-            auto to =
-                std::remove_cvref_t<decltype(from)>(std::size_t(next.width) * std::size_t(next.height) * 4);
-            halve(from.data(), {image.width, image.height}, to.data());
-            next.rgba = std::move(to);
-        },
-        image.rgba);
-    return next;
-}
 
 bool is_opaque(const Image& image, int first_row, int rows) {
     return std::visit(
@@ -102,13 +22,6 @@ bool is_opaque(const Image& image, int first_row, int rows) {
 }
 
 }  // namespace
-
-std::vector<Image> smaller_levels(const Image& image) {
-    std::vector<Image> levels;
-    for (Extent size{image.width, image.height}; size.width > 1 || size.height > 1; size = half(size))
-        levels.push_back(half_size(levels.empty() ? image : levels.back()));
-    return levels;
-}
 
 void check_texture_size(const Image& image) {
     GLint largest = 0;
@@ -188,8 +101,7 @@ PictureTexture upload_picture(const Image& image) {
 }
 
 PictureTexture upload_picture(Image image, int most_levels) {
-    const int last_level =
-        std::min(most_levels, int(std::bit_width(unsigned(std::max(image.width, image.height)))) - 1);
+    const int last_level = std::min(most_levels, mipmap_count({image.width, image.height}));
     PictureTexture texture = picture_room(image, last_level);
     for (int level = 0; level <= last_level; ++level) {
         if (level > 0) halve(image);

@@ -9,9 +9,6 @@
 
 namespace probewarp {
 
-/// The picture's mipmaps from half its size down to one pixel: each pixel the alpha-weighted mean of four.
-std::vector<Image> smaller_levels(const Image& image);
-
 /// A picture as the graphics driver holds it.
 struct PictureTexture {
     GlTexture texture;

@@ -16,18 +16,10 @@
 #include "model/probe.h"
 #include "render/drawn_mesh.h"
 #include "render/gl_objects.h"
+#include "render/picture_drawer.h"
 #include "render/picture_texture.h"
 
 namespace probewarp {
-
-/// What a target shows: target pixel t is the point origin + t / scale of the image's plane.
-struct View {
-    glm::dvec2 origin{0};  ///< image pixels
-    glm::dvec2 scale{1};   ///< target pixels per image pixel, > 0
-    int width = 0;         ///< of the target, pixels
-    int height = 0;
-    int first_column = 0;  ///< of the target: what is left of it stays as it was
-};
 
 /// Fills the window itself with one colour, before its toolkit draws into it.
 void clear_window(int width, int height, glm::vec3 colour);
@@ -53,20 +45,7 @@ struct OverlayStyle {
 inline constexpr std::array<Colour, 4> heat_colours{
     {{0x0d, 0x08, 0x87}, {0x9c, 0x17, 0x9e}, {0xed, 0x79, 0x53}, {0xf0, 0xf9, 0x21}}};
 
-/// How a picture for a file is drawn.
-struct FileStyle {
-    int samples = 1;                   ///< samples x samples a target pixel
-    std::optional<Colour> background;  ///< empty: as transparent as it is
-    bool overlay = false;
-};
-
-/// Some of the mesh's triangles, one after the other.
-struct TriangleRun {
-    std::size_t first = 0, count = 0;
-    bool shrunk = true;  ///< false: the picture is drawn no smaller than it is, mipmaps are not wanted
-};
-
-class Renderer {
+class Renderer final : public PictureDrawer {
   public:
     /// Needs a loaded context, which must outlive it. What draws throws Error where a shader does not
     /// compile.
@@ -74,7 +53,7 @@ class Renderer {
 
     void set_picture(PictureTexture picture);
     /// Whether the picture is, everywhere.
-    bool is_opaque() const { return picture_.opaque; }
+    bool is_opaque() const override { return picture_.opaque; }
     void set_mesh(const Mesh& mesh);
     /// The mesh as the processor deformed it. now: #vertices of the mesh, image pixels. Where it has not
     /// `moved`, all of the picture is drawn as it is, with the cells that the mesh leaves out.
@@ -98,10 +77,9 @@ class Renderer {
                    std::optional<Colour> background);
 
     /// draw and read_back. An opaque picture at one sample a pixel has nothing to blend or average and is
-    /// drawn into the integers at once, to the same values. runs: in the mesh's order, at least what shows in
-    /// the view, or where the mesh has not moved one run for all.
+    /// drawn into the integers at once, to the same values.
     void render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                std::span<const TriangleRun> runs);
+                std::span<const TriangleRun> runs) override;
 
     /// Shows what draw drew with one sample a pixel: over a checkerboard of squares of `square` pixels inside
     /// the image's frame, dimmed beside it; with the mesh's lines where asked. Returns the texture that holds

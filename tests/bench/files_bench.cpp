@@ -13,6 +13,9 @@
 #include "libraries.h"
 #include "render/context.h"
 #include "render/export.h"
+#include "render/rasterizer.h"
+#include "render/renderer.h"
+#include "render/mipmaps.h"
 
 namespace probewarp {
 namespace {
@@ -207,10 +210,8 @@ void mipmaps(benchmark::State& state) {
 }
 BENCHMARK(mipmaps)->Unit(benchmark::kMillisecond);
 
-/// The deformed picture's pixels, without the file.
-void render(benchmark::State& state) {
-    const auto context = open_context("auto");
-    Renderer renderer;
+/// A document of two probes, one of which pulls and turns.
+Document pulled() {
     Document document;
     Picture whole;
     whole.image = picture();
@@ -220,19 +221,39 @@ void render(benchmark::State& state) {
     moved.angle = 0.4;
     document.probes.push_back(moved);
     document.probes.push_back(new_probe(document, {4500, 1500}));
-    Deformation deformation;
-    update(deformation, document);
-    renderer.set_picture(upload_picture(document.picture->image));
-    renderer.set_mesh(mesh_of(deformation));
-    renderer.set_positions(deformation.now, deformation.moved);
+    return document;
+}
+
+/// The deformed picture's pixels, without the file.
+void draw_by(benchmark::State& state, PictureDrawer& drawer, const Deformation& deformation) {
     for (auto _ : state) {
-        ExportJob job(renderer, document, deformation, {});
+        ExportJob job(drawer, deformation.source, deformation, {});
         while (!job.done()) job.step();
         benchmark::DoNotOptimize(job.take());
     }
+}
+
+void draw_by_driver(benchmark::State& state) {
+    const auto context = open_context("auto");
+    Renderer renderer;
+    Deformation deformation;
+    update(deformation, pulled());
+    renderer.set_picture(upload_picture(deformation.source.picture->image));
+    renderer.set_mesh(mesh_of(deformation));
+    renderer.set_positions(deformation.now, deformation.moved);
+    draw_by(state, renderer, deformation);
     state.SetLabel(renderer_name());
 }
-BENCHMARK(render)->Unit(benchmark::kMillisecond);
+BENCHMARK(draw_by_driver)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+
+void draw_by_processor(benchmark::State& state) {
+    Deformation deformation;
+    update(deformation, pulled());
+    Rasterizer rasterizer(deformation.source.picture->image, 1);
+    rasterizer.set_mesh(mesh_of(deformation), deformation.now, deformation.moved);
+    draw_by(state, rasterizer, deformation);
+}
+BENCHMARK(draw_by_processor)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 }  // namespace
 }  // namespace probewarp

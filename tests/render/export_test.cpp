@@ -3,88 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <string>
 
-#include "model/deformation.h"
 #include "render/context.h"
 #include "render/export.h"
+#include "scene.h"
 
 namespace probewarp {
 namespace {
-
-/// Noise, opaque but for the pixel at (clear, clear).
-template <class Sample>
-PicturePtr noise(int width, int height, int clear = -1) {
-    Picture picture;
-    picture.image.width = width;
-    picture.image.height = height;
-    std::mt19937 random(13);
-    std::vector<Sample> rgba(std::size_t(width) * std::size_t(height) * 4);
-    for (std::size_t i = 0; i < rgba.size(); ++i)
-        rgba[i] = i % 4 == 3 ? std::numeric_limits<Sample>::max() : Sample(random());
-    if (clear >= 0) rgba[std::size_t(clear * width + clear) * 4 + 3] = 0;
-    picture.image.rgba = std::move(rgba);
-    return std::make_shared<const Picture>(std::move(picture));
-}
-
-/// Two probes, one of which moves and turns, so that the picture stretches here, shrinks there, and leaves
-/// its frame.
-Document pulled(PicturePtr picture, double angle) {
-    Document document;
-    document.picture = std::move(picture);
-    const double side = document.picture->image.width;
-    Probe probe = new_probe(document, {side * 0.4, side * 0.3});
-    probe.now += glm::dvec2(side * 0.1, side * 0.05);
-    probe.angle = angle;
-    document.probes.push_back(probe);
-    document.probes.push_back(new_probe(document, {side * 0.8, side * 0.6}));
-    return document;
-}
-
-/// All triangles, with mipmaps where they are wanted.
-TriangleRun everything(const Deformation& deformation) {
-    return {0, mesh_of(deformation).triangles.size() / 3, true};
-}
-
-struct Scene {
-    Document document;
-    Deformation deformation;
-    Renderer renderer;
-
-    explicit Scene(const Document& of) : document(of) {
-        update(deformation, document);
-        renderer.set_picture(upload_picture(document.picture->image));
-        renderer.set_mesh(mesh_of(deformation));
-        renderer.set_positions(deformation.now, deformation.moved);
-    }
-
-    View whole(double scale) const {
-        View view;
-        view.scale = glm::dvec2(scale);
-        view.width = int(document.picture->image.width * scale);
-        view.height = int(document.picture->image.height * scale);
-        return view;
-    }
-
-    /// What render draws; by the runs that are wanted, or all alike.
-    void render(Image& image, const View& view, std::optional<Colour> background = {}) {
-        const TriangleRun all = everything(deformation);
-        renderer.render(image, 0, 0, view, {1, background, false}, std::span(&all, 1));
-    }
-
-    Image blank(const View& view) const {
-        Image image;
-        image.width = view.width;
-        image.height = view.height;
-        const std::size_t samples = std::size_t(view.width) * std::size_t(view.height) * 4;
-        if (document.picture->image.bits() == 16)
-            image.rgba = std::vector<std::uint16_t>(samples);
-        else
-            image.rgba = std::vector<std::uint8_t>(samples);
-        return image;
-    }
-};
 
 /// The layer's weights add up to 1 but for float's rounding, some 2^-23: there a hundredth of the 65535 steps
 /// of 16 bits may fall to the neighbour, of the 255 steps of 8 bits one value in 30000.

@@ -1,4 +1,5 @@
 // The renderer's own promises: what it refuses and how it says so, and that its two ways of deforming agree.
+#include "render/mipmaps.h"
 #include "render/renderer.h"
 
 #include <fmt/format.h>

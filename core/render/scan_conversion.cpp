@@ -1,0 +1,107 @@
+#include "render/scan_conversion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace probewarp {
+
+namespace {
+
+using glm::dvec2;
+
+/// The side of a triangle from its upper end to its lower one: the same whichever triangle's it is.
+struct Side {
+    dvec2 upper;
+    double slope;  ///< how far it goes right on its way down by one
+
+    Side(dvec2 from, dvec2 to) : upper(from), slope((to.x - from.x) / (to.y - from.y)) {}
+    double x_at(double y) const { return upper.x + (y - upper.y) * slope; }
+};
+
+/// Drivers put corners on a grid of 1/256 of a pixel.
+dvec2 snapped(dvec2 corner) {
+    constexpr double steps = 256;
+    return {std::nearbyint(corner.x * steps) / steps, std::nearbyint(corner.y * steps) / steps};
+}
+
+/// The first pixel whose centre is at `from` or beyond, in [least, most].
+int first_centre(double from, int least, int most) {
+    return int(std::clamp(std::ceil(from - 0.5), double(least), double(most)));
+}
+
+/// Calls cover(row, first, end) for each row's pixels from `first` to before `end`. corners: target pixels
+template <class Cover>
+void cover_rows(std::array<dvec2, 3> corners, const Rows& rows, int width, const Cover& cover) {
+    std::sort(corners.begin(), corners.end(),
+              [](dvec2 a, dvec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); });
+    const auto [top, middle, bottom] = corners;
+    const double area = (middle.x - top.x) * (bottom.y - top.y) - (bottom.x - top.x) * (middle.y - top.y);
+    if (area == 0) return;
+    const Side whole(top, bottom);
+    for (const auto& [upper, lower] : {std::pair(top, middle), std::pair(middle, bottom)}) {
+        const int first = first_centre(upper.y, rows.first, rows.end);
+        const int end = first_centre(lower.y, rows.first, rows.end);
+        if (first >= end) continue;
+        const Side half(upper, lower);
+        const Side &left = area > 0 ? whole : half, &right = area > 0 ? half : whole;
+        for (int row = first; row < end; ++row) {
+            const int from = first_centre(left.x_at(row + 0.5), 0, width);
+            const int to = first_centre(right.x_at(row + 0.5), 0, width);
+            if (from < to) cover(row, from, to);
+        }
+    }
+}
+
+/// The target's point t shows the picture at rest at `at + across t.x + down t.y`, image pixels.
+struct Lookup {
+    dvec2 at, across, down;
+};
+
+/// corners: target pixels; back: image pixels, from where each is to where it was
+Lookup lookup_of(const std::array<dvec2, 3>& corners, const std::array<dvec2, 3>& back, const View& view) {
+    // The way back is 0 all over a triangle that has not moved, which then shows the picture's own pixels.
+    const dvec2 p = corners[1] - corners[0], q = corners[2] - corners[0];
+    const dvec2 u = back[1] - back[0], v = back[2] - back[0];
+    const double area = p.x * q.y - p.y * q.x;
+    const dvec2 across = (u * q.y - v * p.y) / area, down = (v * p.x - u * q.x) / area;
+    return {view.origin + back[0] - across * corners[0].x - down * corners[0].y,
+            dvec2(1 / view.scale.x, 0) + across, dvec2(0, 1 / view.scale.y) + down};
+}
+
+/// As shaders/mesh.frag chooses it.
+float level_of(const Lookup& lookup, int last_level) {
+    const double footprint =
+        std::max(std::hypot(lookup.across.x, lookup.across.y), std::hypot(lookup.down.x, lookup.down.y));
+    return footprint < 1.02 ? 0.0f : float(std::min(std::log2(footprint), double(last_level)));
+}
+
+}  // namespace
+
+std::vector<std::vector<Span>> scan_convert(const DrawnTriangles& triangles, const View& view,
+                                            const Rows& rows, int last_level) {
+    std::vector<std::vector<Span>> spans(std::size_t(rows.end - rows.first));
+    const auto convert = [&](std::size_t triangle, bool shrunk) {
+        std::array<dvec2, 3> corners, on_grid, back;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = triangles.corners[triangle * 3 + k];
+            const dvec2 now(triangles.now[vertex]);
+            corners[k] = (now - view.origin) * view.scale;
+            on_grid[k] = snapped(corners[k]);
+            back[k] = dvec2(triangles.rest[vertex]) - now;
+        }
+        const auto [least, most] = std::minmax({on_grid[0].y, on_grid[1].y, on_grid[2].y});
+        if (least >= rows.end || most <= rows.first) return;
+        const Lookup lookup = lookup_of(corners, back, view);
+        const float level = shrunk ? level_of(lookup, last_level) : 0.0f;
+        cover_rows(on_grid, rows, view.width, [&](int row, int first, int end) {
+            const dvec2 at = lookup.at + lookup.across * (first + 0.5) + lookup.down * (row + 0.5);
+            spans[std::size_t(row - rows.first)].push_back({first, end, at, lookup.across, level});
+        });
+    };
+    for (const TriangleRun& run : triangles.runs)
+        for (std::size_t i = run.first; i < run.first + run.count; ++i) convert(i, run.shrunk);
+    return spans;
+}
+
+}  // namespace probewarp

@@ -1,0 +1,135 @@
+// The processor draws what the graphics driver draws, with every instruction set.
+#include "render/rasterizer.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <string>
+
+#include "render/context.h"
+#include "render/export.h"
+#include "scene.h"
+
+namespace probewarp {
+namespace {
+
+/// Runs `test` with each instruction set that this machine has.
+template <class Test>
+void with_every_instruction_set(const Test& test) {
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        SCOPED_TRACE(hwy::TargetName(target));
+        hwy::SetSupportedTargetsForTest(target);
+        test();
+    }
+    hwy::SetSupportedTargetsForTest(0);
+}
+
+struct Difference {
+    std::size_t steps = 0;   ///< values that are one apart, of 255
+    std::size_t others = 0;  ///< further
+    std::size_t values = 0;
+};
+
+Difference difference(const Image& a, const Image& b) {
+    Difference found;
+    const int step = a.bits() == 16 ? 257 : 1;
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x)
+            for (std::size_t c = 0; c < 4; ++c) {
+                const int off = std::abs(pixel(a, x, y)[c] - pixel(b, x, y)[c]);
+                found.steps += off > step / 8 && off <= step;
+                found.others += off > step;
+                ++found.values;
+            }
+    return found;
+}
+
+/// Drivers know places to float's 2^-15 of a pixel or so, from which noise makes 255 / 32768 of a step; but
+/// in the slivers of a fold, where a place moves by pixels, far more of a few.
+void expect_alike(const Image& a, const Image& b) {
+    const Difference found = difference(a, b);
+    EXPECT_LE(found.others, found.values / 10'000);
+    EXPECT_LE(found.steps, found.values / 64);
+}
+
+Image drawn_by_processor(const Scene& scene, const View& view, std::optional<Colour> background = {}) {
+    const Image& picture = scene.document.picture->image;
+    Rasterizer rasterizer(picture, 31);
+    rasterizer.set_mesh(mesh_of(scene.deformation), scene.deformation.now, scene.deformation.moved);
+    Image image = scene.blank(view);
+    const TriangleRun all = everything(scene.deformation);
+    rasterizer.render(image, 0, 0, view, {1, background, false}, std::span(&all, 1));
+    return image;
+}
+
+void expect_as_the_driver(const Document& document, double scale, std::optional<Colour> background = {}) {
+    Scene scene(document);
+    const View view = scene.whole(scale);
+    Image by_driver = scene.blank(view);
+    scene.render(by_driver, view, background);
+    with_every_instruction_set([&] { expect_alike(drawn_by_processor(scene, view, background), by_driver); });
+}
+
+TEST(Rasterizer, DrawsAsTheDriverDoes) {
+    const auto context = open_context("osmesa");
+    for (const auto& picture : {noise<std::uint8_t>(300, 200), noise<std::uint16_t>(300, 200)})
+        for (const double angle : {0.0, 0.4, 1.5, 3.0})
+            for (const double scale : {1.0, 0.6, 0.07, 2.5}) {
+                SCOPED_TRACE(std::to_string(angle) + ", " + std::to_string(scale));
+                expect_as_the_driver(pulled(picture, angle), scale, Colour{250, 3, 77});
+            }
+}
+
+TEST(Rasterizer, LeavesWhatIsBesideThePictureClear) {
+    const auto context = open_context("osmesa");
+    expect_as_the_driver(pulled(noise<std::uint8_t>(300, 200), 0.8), 1.3);
+}
+
+TEST(Rasterizer, LaysLaterTrianglesOverEarlierOnes) {
+    const auto context = open_context("osmesa");
+    Document folded = pulled(noise<std::uint8_t>(300, 200), 0.4);
+    folded.probes[0].now.x += 180;
+    expect_as_the_driver(folded, 1);
+}
+
+TEST(Rasterizer, DrawsThinPictures) {
+    const auto context = open_context("osmesa");
+    for (const auto& picture :
+         {noise<std::uint8_t>(1, 40), noise<std::uint16_t>(40, 1), noise<std::uint8_t>(1, 1)})
+        for (const double scale : {1.0, 3.0, 13.7}) expect_as_the_driver(pulled(picture, 0.3), scale);
+    expect_as_the_driver(pulled(noise<std::uint8_t>(3, 400), 0.3), 0.4);  // mipmaps one pixel wide
+}
+
+TEST(Rasterizer, GivesAnUndeformedPictureBack) {
+    const auto context = open_context("osmesa");
+    for (const auto& picture : {noise<std::uint8_t>(301, 67), noise<std::uint16_t>(301, 67)}) {
+        Document document;
+        document.picture = picture;
+        const Scene still(document);
+        document.probes.push_back(new_probe(document, {10, 10}));
+        Scene at_rest(document);
+        at_rest.deformation.moved = true;  // by the mesh, not as the one picture that it is
+        with_every_instruction_set([&] {
+            for (const Scene* scene : {&still, &std::as_const(at_rest)})
+                EXPECT_EQ(drawn_by_processor(*scene, scene->whole(1)).rgba, picture->image.rgba);
+        });
+    }
+}
+
+TEST(Rasterizer, TilesDoNotShow) {
+    const auto context = open_context("osmesa");
+    const Scene scene(pulled(noise<std::uint8_t>(300, 200), 0.3));
+    const View view = scene.whole(15);
+    const Image whole = drawn_by_processor(scene, view);
+    Rasterizer rasterizer(scene.document.picture->image, 31);
+    rasterizer.set_mesh(mesh_of(scene.deformation), scene.deformation.now, scene.deformation.moved);
+    ExportSettings settings;
+    settings.scale = 15;
+    ExportJob job(rasterizer, scene.document, scene.deformation, settings);
+    while (!job.done()) job.step();
+    expect_alike(job.take(), whole);
+}
+
+}  // namespace
+}  // namespace probewarp
