@@ -72,19 +72,9 @@ int wanted_levels(const Document& document, const Deformation& deformation, cons
     return Footprints(deformation, export_view(document, deformation, settings)).wanted_levels();
 }
 
-/// Whether the processor draws it, which needs no context and is quicker than a graphics driver without a
-/// card: only what has nothing to blend.
-bool drawn_by_processor(const RenderPlan& plan, const Image& image) {
-    return plan.options.backend == "auto" && plan.options.deform != "shader" && !plan.settings.overlay &&
-           plan.settings.samples == 1 && !has_alpha(image);
-}
-
-/// The image; what is left has its size and the rest, but no pixels.
-Image pixels_taken_from(Image& image) {
-    Image taken = image.bits() == 16 ? Image{image.width, image.height, std::vector<std::uint16_t>(), {}, {}}
-                                     : Image{image.width, image.height, std::vector<std::uint8_t>(), {}, {}};
-    taken.rgba.swap(image.rgba);
-    return taken;
+/// Whether the processor draws, which needs no context and is quicker than a graphics driver without a card.
+bool drawn_by_processor(const RenderPlan& plan) {
+    return plan.options.backend == "auto" && plan.options.deform != "shader" && !plan.settings.overlay;
 }
 
 }  // namespace
@@ -94,13 +84,12 @@ void Drawer::hold(const Document& document, const Deformation& deformation) {
     const int levels = wanted_levels(document, deformation, plan_.settings);
     if (!offscreen_) offscreen_.emplace(plan_.options.backend);
     Renderer& renderer = offscreen_->renderer;
-    Picture& picture = *std::const_pointer_cast<Picture>(document.picture);
-    std::vector<std::byte>().swap(picture.original);
-    renderer.set_picture(upload_picture(pixels_taken_from(picture.image), levels));
+    const Image& image = document.picture->image;
+    renderer.set_picture(upload_picture(image, levels));
     renderer.set_mesh(mesh_of(deformation));
     if (plan_.options.deform == "shader") {
         renderer.set_weights(weights_of(deformation));
-        renderer.set_pose(deformation.transformations, glm::vec2(centre(picture.image)));
+        renderer.set_pose(deformation.transformations, glm::vec2(centre(image)));
     } else {
         renderer.set_positions(deformation.now, deformation.moved);
     }
@@ -124,9 +113,8 @@ std::unique_ptr<ImageEncoding> Drawer::draw(const Document& document, const Defo
             output.restart();
         }
     };
-    const Image& image = document.picture->image;
-    if (drawn_by_processor(plan_, image)) {
-        Rasterizer rasterizer(image, wanted_levels(document, deformation, plan_.settings));
+    if (drawn_by_processor(plan_)) {
+        Rasterizer rasterizer(document.picture->image, wanted_levels(document, deformation, plan_.settings));
         rasterizer.set_mesh(mesh_of(deformation), deformation.now, deformation.moved);
         return by(rasterizer);
     }

@@ -71,9 +71,7 @@ class Drawer {
     explicit Drawer(const RenderPlan& plan) : plan_(plan) {}
 
     /// Draws, while what is drawn already is being encoded and written; finish() of what it returns is still
-    /// to be written. So that less is there at once, the document's picture has lost its file's bytes and its
-    /// pixels afterwards; its Picture must not have been made as a constant. show: called with the part that
-    /// is done. Throws Error.
+    /// to be written. show: called with the part that is done. Throws Error.
     std::unique_ptr<ImageEncoding> draw(const Document& document, const Deformation& deformation,
                                         Output& output, const std::function<void(double)>& show);
 

@@ -12,8 +12,6 @@ namespace probewarp {
 
 Extent half(Extent of) { return {std::max(1, of.width / 2), std::max(1, of.height / 2)}; }
 
-int mipmap_count(Extent of) { return int(std::bit_width(unsigned(std::max(of.width, of.height)))) - 1; }
-
 namespace {
 
 /// The alpha-weighted mean of four pixels.
@@ -40,8 +38,7 @@ std::array<Sample, 4> opaque_mean(const std::array<const Sample*, 4>& pixels) {
     return q;
 }
 
-/// A row of half(size). from: `size`; to: the row, which may lie in `from`: no pixel is written before those
-/// that it and the ones before it are made of have been read.
+/// A row of half(size). from: `size`; to: the row
 template <class Sample>
 void halve_row(const Sample* from, Extent size, int y, Sample* to) {
     const std::size_t row = std::size_t(size.width) * 4;
@@ -81,23 +78,10 @@ Image half_size(const Image& image) {
 
 std::vector<Image> smaller_levels(const Image& image, int most) {
     std::vector<Image> levels;
-    const int count = std::min(most, mipmap_count({image.width, image.height}));
-    for (int i = 0; i < count; ++i) levels.push_back(half_size(levels.empty() ? image : levels.back()));
+    const int all = int(std::bit_width(unsigned(std::max(image.width, image.height)))) - 1;
+    for (int i = 0; i < std::min(most, all); ++i)
+        levels.push_back(half_size(levels.empty() ? image : levels.back()));
     return levels;
-}
-
-void halve(Image& image) {
-    const Extent size{image.width, image.height};
-    image.width = half(size).width;
-    image.height = half(size).height;
-    const std::size_t row = std::size_t(image.width) * 4;
-    std::visit(
-        [&](auto& samples) {
-            for (int y = 0; y < image.height; ++y)
-                halve_row(samples.data(), size, y, samples.data() + std::size_t(y) * row);
-            samples.resize(row * std::size_t(image.height));
-        },
-        image.rgba);
 }
 
 }  // namespace probewarp

@@ -16,13 +16,7 @@ struct Extent {
 /// Of the next mipmap.
 Extent half(Extent of);
 
-/// How many mipmaps there are down to one pixel.
-int mipmap_count(Extent of);
-
 /// Those from half the image's size on, each pixel the alpha-weighted mean of four; at most so many.
 std::vector<Image> smaller_levels(const Image& image, int most = std::numeric_limits<int>::max());
-
-/// The first of them, in the image's own memory.
-void halve(Image& image);
 
 }  // namespace probewarp

@@ -93,22 +93,11 @@ PictureTexture PictureUpload::take() {
     return std::move(texture_);
 }
 
-PictureTexture upload_picture(const Image& image) {
-    const std::vector<Image> levels = smaller_levels(image);
+PictureTexture upload_picture(const Image& image, int most_levels) {
+    const std::vector<Image> levels = smaller_levels(image, most_levels);
     PictureUpload upload(image, levels);
     while (!upload.done()) upload.step();
     return upload.take();
-}
-
-PictureTexture upload_picture(Image image, int most_levels) {
-    const int last_level = std::min(most_levels, mipmap_count({image.width, image.height}));
-    PictureTexture texture = picture_room(image, last_level);
-    for (int level = 0; level <= last_level; ++level) {
-        if (level > 0) halve(image);
-        for (int row = 0; row < image.height; row += rows_at_once(image, row))
-            upload_rows(texture, level, image, row, rows_at_once(image, row));
-    }
-    return texture;
 }
 
 GlTexture preview_texture(std::span<const Image> levels) {

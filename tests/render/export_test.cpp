@@ -38,7 +38,7 @@ TEST(Straight, IsWhatTheLayerGives) {
                 for (const auto& background :
                      {std::optional<Colour>{}, std::optional<Colour>{{250, 3, 77}}}) {
                     Image straight = scene.blank(view), layered = straight;
-                    scene.render(straight, view, background);
+                    scene.render(straight, view, {1, background, false});
                     scene.renderer.draw(view, 1);
                     scene.renderer.read_back(layered, 0, 0, view, 1, background);
                     SCOPED_TRACE(std::to_string(angle) + ", " + std::to_string(scale));
@@ -131,7 +131,7 @@ TEST(Footprints, MoreLevelsThanWantedChangeNothing) {
             const int wanted = Footprints(scene.deformation, view).wanted_levels();
             Image all = scene.blank(view), few = all;
             scene.render(all, view);
-            scene.renderer.set_picture(upload_picture(Image(document.picture->image), wanted));
+            scene.renderer.set_picture(upload_picture(document.picture->image, wanted));
             scene.render(few, view);
             EXPECT_EQ(few.rgba, all.rgba) << scale;
             if (!moved && scale == 1.0) {

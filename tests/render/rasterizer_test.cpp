@@ -26,20 +26,25 @@ void with_every_instruction_set(const Test& test) {
 }
 
 struct Difference {
-    std::size_t steps = 0;   ///< values that are one apart, of 255
+    std::size_t steps = 0;   ///< values that are up to one apart, of 255
     std::size_t others = 0;  ///< further
     std::size_t values = 0;
 };
 
+/// Of what can be seen: colours count as much as their alpha.
 Difference difference(const Image& a, const Image& b) {
     Difference found;
-    const int step = a.bits() == 16 ? 257 : 1;
+    const double largest = a.bits() == 16 ? 65535 : 255;
     for (int y = 0; y < a.height; ++y)
         for (int x = 0; x < a.width; ++x)
             for (std::size_t c = 0; c < 4; ++c) {
-                const int off = std::abs(pixel(a, x, y)[c] - pixel(b, x, y)[c]);
-                found.steps += off > step / 8 && off <= step;
-                found.others += off > step;
+                const auto seen = [&](const Image& image) {
+                    const auto p = pixel(image, x, y);
+                    return c == 3 ? p[c] : p[c] * p[3] / largest;
+                };
+                const double off = std::abs(seen(a) - seen(b)) * 255 / largest;
+                found.steps += off > 0.125 && off <= 1;
+                found.others += off > 1;
                 ++found.values;
             }
     return found;
@@ -53,22 +58,22 @@ void expect_alike(const Image& a, const Image& b) {
     EXPECT_LE(found.steps, found.values / 64);
 }
 
-Image drawn_by_processor(const Scene& scene, const View& view, std::optional<Colour> background = {}) {
+Image drawn_by_processor(const Scene& scene, const View& view, const FileStyle& style = {}) {
     const Image& picture = scene.document.picture->image;
     Rasterizer rasterizer(picture, 31);
     rasterizer.set_mesh(mesh_of(scene.deformation), scene.deformation.now, scene.deformation.moved);
     Image image = scene.blank(view);
     const TriangleRun all = everything(scene.deformation);
-    rasterizer.render(image, 0, 0, view, {1, background, false}, std::span(&all, 1));
+    rasterizer.render(image, 0, 0, view, style, std::span(&all, 1));
     return image;
 }
 
-void expect_as_the_driver(const Document& document, double scale, std::optional<Colour> background = {}) {
+void expect_as_the_driver(const Document& document, double scale, const FileStyle& style = {}) {
     Scene scene(document);
     const View view = scene.whole(scale);
     Image by_driver = scene.blank(view);
-    scene.render(by_driver, view, background);
-    with_every_instruction_set([&] { expect_alike(drawn_by_processor(scene, view, background), by_driver); });
+    scene.render(by_driver, view, style);
+    with_every_instruction_set([&] { expect_alike(drawn_by_processor(scene, view, style), by_driver); });
 }
 
 TEST(Rasterizer, DrawsAsTheDriverDoes) {
@@ -77,8 +82,26 @@ TEST(Rasterizer, DrawsAsTheDriverDoes) {
         for (const double angle : {0.0, 0.4, 1.5, 3.0})
             for (const double scale : {1.0, 0.6, 0.07, 2.5}) {
                 SCOPED_TRACE(std::to_string(angle) + ", " + std::to_string(scale));
-                expect_as_the_driver(pulled(picture, angle), scale, Colour{250, 3, 77});
+                expect_as_the_driver(pulled(picture, angle), scale, {1, Colour{250, 3, 77}, false});
             }
+}
+
+TEST(Rasterizer, BlendsAsTheDriverDoes) {
+    const auto context = open_context("osmesa");
+    for (const auto& picture : {translucent<std::uint8_t>(120, 90), translucent<std::uint16_t>(120, 90)})
+        for (const double angle : {0.0, 0.4, 3.0})
+            for (const double scale : {1.0, 0.45, 1.7})
+                for (const int samples : {1, 3})
+                    for (const auto& background :
+                         {std::optional<Colour>{}, std::optional<Colour>{{250, 3, 77}}}) {
+                        SCOPED_TRACE(std::to_string(angle) + ", " + std::to_string(scale));
+                        expect_as_the_driver(pulled(picture, angle), scale, {samples, background, false});
+                    }
+}
+
+TEST(Rasterizer, AveragesTheSamplesOfAnOpaquePicture) {
+    const auto context = open_context("osmesa");
+    expect_as_the_driver(pulled(noise<std::uint8_t>(120, 90), 0.4), 1.2, {4, {}, false});
 }
 
 TEST(Rasterizer, LeavesWhatIsBesideThePictureClear) {
@@ -103,7 +126,8 @@ TEST(Rasterizer, DrawsThinPictures) {
 
 TEST(Rasterizer, GivesAnUndeformedPictureBack) {
     const auto context = open_context("osmesa");
-    for (const auto& picture : {noise<std::uint8_t>(301, 67), noise<std::uint16_t>(301, 67)}) {
+    for (const auto& picture : {noise<std::uint8_t>(301, 67), noise<std::uint16_t>(301, 67),
+                                translucent<std::uint8_t>(301, 67), translucent<std::uint16_t>(301, 67)}) {
         Document document;
         document.picture = picture;
         const Scene still(document);

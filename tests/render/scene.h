@@ -29,6 +29,19 @@ PicturePtr noise(int width, int height, int clear = -1) {
     return std::make_shared<const Picture>(std::move(picture));
 }
 
+/// Noise of any alpha, of which a fourth is clear and a fourth opaque.
+template <class Sample>
+PicturePtr translucent(int width, int height) {
+    Picture picture = *noise<Sample>(width, height);
+    auto& rgba = std::get<std::vector<Sample>>(picture.image.rgba);
+    std::mt19937 random(14);
+    for (std::size_t i = 3; i < rgba.size(); i += 4) {
+        const auto kind = random() % 4;
+        rgba[i] = kind == 0 ? 0 : kind == 1 ? std::numeric_limits<Sample>::max() : Sample(random());
+    }
+    return std::make_shared<const Picture>(std::move(picture));
+}
+
 /// Two probes, one of which moves and turns, so that the picture stretches here, shrinks there, and leaves
 /// its frame.
 inline Document pulled(PicturePtr picture, double angle) {
@@ -81,10 +94,10 @@ struct Scene {
         return view;
     }
 
-    /// What render draws; by the runs that are wanted, or all alike.
-    void render(Image& image, const View& view, std::optional<Colour> background = {}) {
+    /// What render draws, of all triangles alike.
+    void render(Image& image, const View& view, const FileStyle& style = {}) {
         const TriangleRun all = everything(deformation);
-        renderer.render(image, 0, 0, view, {1, background, false}, std::span(&all, 1));
+        renderer.render(image, 0, 0, view, style, std::span(&all, 1));
     }
 
     Image blank(const View& view) const { return probewarp::blank(document.picture->image, view); }
