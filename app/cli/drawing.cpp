@@ -8,7 +8,6 @@
 
 #include "cli/arguments.h"
 #include "render/overlay.h"
-#include "render/rasterizer.h"
 
 namespace probewarp {
 
@@ -68,24 +67,19 @@ void show_heat(Renderer& renderer, const Deformation& deformation, const RenderO
     renderer.set_overlay(weight_overlay(deformation, probe), style);
 }
 
-int wanted_levels(const Document& document, const Deformation& deformation, const ExportSettings& settings) {
-    return Footprints(deformation, export_view(document, deformation, settings)).wanted_levels();
-}
-
 /// Whether the processor draws, which needs no context and is quicker than a graphics driver without a card.
 bool drawn_by_processor(const RenderPlan& plan) {
-    return plan.options.backend == "auto" && plan.options.deform != "shader" && !plan.settings.overlay;
+    return plan.options.backend == "auto" && plan.options.deform != "shader" && !plan.file.settings.overlay;
 }
 
 }  // namespace
 
 /// Hands the document's picture and deformed mesh to the renderer, which is made where there is none.
 void Drawer::hold(const Document& document, const Deformation& deformation) {
-    const int levels = wanted_levels(document, deformation, plan_.settings);
     if (!offscreen_) offscreen_.emplace(plan_.options.backend);
     Renderer& renderer = offscreen_->renderer;
     const Image& image = document.picture->image;
-    renderer.set_picture(upload_picture(image, levels));
+    renderer.set_picture(upload_picture(image));
     renderer.set_mesh(mesh_of(deformation));
     if (plan_.options.deform == "shader") {
         renderer.set_weights(weights_of(deformation));
@@ -98,28 +92,11 @@ void Drawer::hold(const Document& document, const Deformation& deformation) {
 
 std::unique_ptr<ImageEncoding> Drawer::draw(const Document& document, const Deformation& deformation,
                                             Output& output, const std::function<void(double)>& show) {
-    const auto by = [&](PictureDrawer& drawer) {
-        ExportJob job(drawer, document, deformation, plan_.settings);
-        for (bool transparent = job.may_be_transparent();; transparent = !transparent) {
-            auto encoding =
-                std::make_unique<ImageEncoding>(plan_.format, job.like(), plan_.encode, transparent);
-            while (!job.done() && encoding->fits()) {
-                encoding->add(job.next_band());
-                output.write(encoding->take());
-                show(job.progress());
-            }
-            if (encoding->fits()) return encoding;
-            job.restart();
-            output.restart();
-        }
-    };
-    if (drawn_by_processor(plan_)) {
-        Rasterizer rasterizer(document.picture->image, wanted_levels(document, deformation, plan_.settings));
-        rasterizer.set_mesh(mesh_of(deformation), deformation.now, deformation.moved);
-        return by(rasterizer);
-    }
+    const ExportSteps steps{[&](const FileParts& parts) { output.write(parts); }, [&] { output.restart(); },
+                            show};
+    if (drawn_by_processor(plan_)) return draw_picture_file(document, deformation, plan_.file, steps);
     hold(document, deformation);
-    return by(offscreen_->renderer);
+    return draw_picture_file(offscreen_->renderer, document, deformation, plan_.file, steps);
 }
 
 }  // namespace probewarp

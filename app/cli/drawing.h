@@ -10,10 +10,9 @@
 
 #include "cli/commands.h"
 #include "cli/timings.h"
+#include "exporting/picture_file.h"
 #include "io/file.h"
-#include "io/image_encoding.h"
 #include "render/context.h"
-#include "render/export.h"
 #include "render/renderer.h"
 
 namespace probewarp {
@@ -21,9 +20,7 @@ namespace probewarp {
 /// What all pictures of one command get alike.
 struct RenderPlan {
     const RenderOptions& options;
-    const ImageFormat& format;
-    ExportSettings settings;
-    EncodeOptions encode;
+    PictureFile file;
 };
 
 /// A bar that shows how far a render is, once it has taken a second and where somebody watches.

@@ -122,9 +122,10 @@ void check_not_the_input(const RenderOptions& o, const std::filesystem::path& ou
 }
 
 RenderPlan plan_of(const RenderOptions& o, const ImageFormat& format) {
-    RenderPlan plan{o, format, export_settings(o), {}};
-    plan.encode.background = plan.settings.background.value_or(plan.encode.background);
-    plan.encode.compression =
+    RenderPlan plan{o, {&format, export_settings(o), {}}};
+    PictureFile& file = plan.file;
+    file.encode.background = file.settings.background.value_or(file.encode.background);
+    file.encode.compression =
         std::ranges::find(compressions(), o.compression, &CompressionName::name)->compression;
     return plan;
 }
@@ -132,7 +133,8 @@ RenderPlan plan_of(const RenderOptions& o, const ImageFormat& format) {
 void render_picture(const RenderOptions& o, const ImageFormat& format, const Document& document,
                     const Deformation& deformation, Timings& timings) {
     const RenderPlan plan = plan_of(o, format);
-    export_view(document, deformation, plan.settings);  // refuses what is too large before anything is opened
+    export_view(document, deformation,
+                plan.file.settings);  // refuses what is too large before anything is opened
     Progress progress(o.quiet);
     Output output(output_path(o), timings);
     const auto encoding = timings.measure(Stage::draw, [&] {

@@ -34,7 +34,7 @@ fs::path usual_folder(const App& app) {
 
 void open_now(App& app, const fs::path& path) {
     start_job(app, fmt::format("Opening {}", path.filename().string()), JobKind::reading,
-              [path](const auto&) -> std::function<void(App&)> {
+              [path](Job&) -> std::function<void(App&)> {
                   auto document = std::make_shared<Document>(read_document(path));
                   std::error_code ignored;
                   const fs::path whole = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
@@ -61,12 +61,11 @@ void save_to(App& app, fs::path path, std::function<void(App&)> then) {
     const Document document = app.editor.document;
     const std::size_t step = app.editor.history.at;
     start_job(app, fmt::format("Saving {}", path.filename().string()), JobKind::writing,
-              [document, path, step, opened,
-               then = std::move(then)](const auto& given_up) -> std::function<void(App&)> {
+              [document, path, step, opened, then = std::move(then)](Job& job) -> std::function<void(App&)> {
                   const auto bytes = encode_project(document);
-                  if (given_up) return {};
+                  if (job.given_up) return {};
                   write_file(path, bytes);
-                  return [path, document, step, then, opened, &given_up](App& a) {
+                  return [path, document, step, then, opened, &job](App& a) {
                       // Given up too late, the person may have gone on, or have opened another document.
                       const auto& steps = a.editor.history.steps;
                       if (a.editor.opened == opened) {
@@ -75,7 +74,7 @@ void save_to(App& app, fs::path path, std::function<void(App&)> then) {
                               a.editor.history.saved = step;
                       }
                       say(a, Tone::done, fmt::format("Saved {}.", path.filename().string()));
-                      if (then && !given_up) then(a);
+                      if (then && !job.given_up) then(a);
                   };
               });
 }
@@ -112,7 +111,7 @@ void replace_picture_dialog(App& app) {
     ask_for_file(app, "Put another picture under the probes", "Replace", false, picture_endings(),
                  usual_folder(app), [](App& app_now, const fs::path& path) {
                      start_job(app_now, fmt::format("Opening {}", path.filename().string()), JobKind::reading,
-                               [path](const auto&) -> std::function<void(App&)> {
+                               [path](Job&) -> std::function<void(App&)> {
                                    auto picture = std::make_shared<const Picture>(read_picture(path));
                                    return [picture](App& a) {
                                        Document document = a.editor.document;
@@ -206,64 +205,73 @@ fs::path export_path(const App& app) {
     return usual_folder(app) / typed;
 }
 
-void export_to(App& app, const fs::path& path) {
-    const ImageFormat* format = image_format_of(path);
-    if (is_obj(path)) {
-        Deformation shape;  // without the refined weights, which may be large and are not written
-        shape.binding = app.editor.deformation.binding;
-        shape.now = app.editor.deformation.now;
-        start_job(app, fmt::format("Exporting {}", path.filename().string()), JobKind::writing,
-                  [path, document = app.editor.document,
-                   shape = std::move(shape)](const auto& given_up) -> std::function<void(App&)> {
-                      const std::string text = encode_obj(document, shape);
-                      if (given_up) return {};
-                      write_file(path, std::as_bytes(std::span(text)));
-                      return
-                          [path](App& a) { say(a, Tone::done, fmt::format("Exported {}.", path.string())); };
-                  });
-        return;
-    }
-    const ExportSettings& settings = app.export_dialog.settings;
-    EncodeOptions encode = app.export_dialog.encode;
-    encode.background = settings.background.value_or(encode.background);
-    try {
-        // Where two blends are compared the renderer holds the other one's.
-        app.renderer->set_positions(app.editor.deformation.now, app.editor.deformation.moved);
-        app.jobs.exporting =
-            std::make_unique<ExportJob>(*app.renderer, app.editor.document, app.editor.deformation, settings);
-    } catch (const std::exception& error) {
-        return say(app, Tone::error, error.what());
-    }
-    app.jobs.export_title = fmt::format("Exporting {}", path.filename().string());
-    app.jobs.exported = [path, format, encode](App& a, Image image) {
-        start_job(a, fmt::format("Writing {}", path.filename().string()), JobKind::writing,
-                  [path, format, encode, image = std::make_shared<Image>(std::move(image))](
-                      const auto& given_up) -> std::function<void(App&)> {
-                      const auto bytes = format->encode(*image, encode);
-                      if (given_up) return {};
-                      write_file(path, bytes);
-                      return [path](App& later) {
-                          say(later, Tone::done, fmt::format("Exported {}.", path.string()));
-                      };
-                  });
+namespace {
+
+/// What a job needs of the deformation: without the weights, which may be large.
+Deformation shape_of(const Deformation& deformation, const Document& document) {
+    Deformation shape;
+    shape.binding = deformation.binding;
+    shape.now = deformation.now;
+    shape.moved = deformation.moved;
+    shape.source = document;
+    return shape;
+}
+
+/// False where it was given up: then nothing was written.
+bool write_obj(const Deformation& shape, const fs::path& path, const Job& job) {
+    const std::string text = encode_obj(shape.source, shape);
+    if (job.given_up) return false;
+    write_file(path, std::as_bytes(std::span(text)));
+    return true;
+}
+
+/// Likewise.
+bool write_picture(const Deformation& shape, const PictureFile& file, const fs::path& path, Job& job) {
+    struct GivenUp {};
+    FileWriter output(path);
+    const auto write = [&](const FileParts& parts) {
+        if (job.given_up) throw GivenUp();
+        for (const auto& part : parts) output.write(part);
     };
-    app.wake();
+    const auto show = [&](double part) { job.progress = float(part); };
+    try {
+        write(
+            draw_picture_file(shape.source, shape, file, {write, [&] { output.restart(); }, show})->finish());
+    } catch (const GivenUp&) {
+        return false;
+    }
+    output.finish();
+    return true;
+}
+
+}  // namespace
+
+void export_to(App& app, const fs::path& path) {
+    PictureFile file{image_format_of(path), app.export_dialog.settings, app.export_dialog.encode};
+    file.encode.background = file.settings.background.value_or(file.encode.background);
+    start_job(app, fmt::format("Exporting {}", path.filename().string()), JobKind::writing,
+              [path, file, shape = shape_of(app.editor.deformation, app.editor.document)](
+                  Job& job) -> std::function<void(App&)> {
+                  const bool written =
+                      is_obj(path) ? write_obj(shape, path, job) : write_picture(shape, file, path, job);
+                  if (!written) return {};
+                  return [path](App& a) { say(a, Tone::done, fmt::format("Exported {}.", path.string())); };
+              });
 }
 
 namespace {
 
 void start_task(App& app, Task task) {
     const std::size_t step = app.editor.history.at;
-    start_job(
-        app, task.label, JobKind::reading,
-        [task = std::move(task), step, opened = app.editor.opened](const auto&) -> std::function<void(App&)> {
-            auto document = std::make_shared<const Document>(task.run());
-            return [document, label = task.label, step, opened](App& a) {
-                if (a.editor.opened != opened || a.editor.history.at != step) return;
-                a.editor.document = *document;
-                commit(a.editor, label);
-            };
-        });
+    start_job(app, task.label, JobKind::reading,
+              [task = std::move(task), step, opened = app.editor.opened](Job&) -> std::function<void(App&)> {
+                  auto document = std::make_shared<const Document>(task.run());
+                  return [document, label = task.label, step, opened](App& a) {
+                      if (a.editor.opened != opened || a.editor.history.at != step) return;
+                      a.editor.document = *document;
+                      commit(a.editor, label);
+                  };
+              });
 }
 
 }  // namespace

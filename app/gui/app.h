@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "editor/editor.h"
+#include "exporting/picture_file.h"
 #include "gui/binding_job.h"
 #include "gui/deform_choice.h"
 #include "gui/file_dialog.h"
@@ -21,7 +22,6 @@
 #include "gui/shown_weights.h"
 #include "gui/theme.h"
 #include "io/image_file.h"
-#include "render/export.h"
 #include "render/renderer.h"
 
 namespace probewarp {

@@ -100,7 +100,6 @@ void draw_shown(App& app, const Shown& before) {
 
 void update_texture(App& app, glm::ivec2 size) {
     update_deformation(app);
-    if (app.jobs.exporting) return;  // the renderer is busy; the canvas keeps its last picture
     if (app.uploaded != app.editor.document.picture) return prepare_picture(app, app.editor.document.picture);
     Shown now = wanted(app, size);
     if (app.shown == now) return;

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "model/document.h"
-#include "render/export.h"
 #include "render/picture_texture.h"
 
 namespace probewarp {
@@ -29,6 +28,7 @@ struct Job {
     JobKind kind = JobKind::background;
     std::atomic<bool> done = false;  ///< the thread has ended
     std::atomic<bool> given_up = false;
+    std::atomic<float> progress = -1;  ///< [0, 1]; below: nobody knows
     std::string error;                 ///< written by the thread before done
     std::function<void(App&)> finish;  ///< written by the thread before done
     std::jthread thread;
@@ -45,16 +45,13 @@ struct Upload {
 
 struct Jobs {
     std::vector<std::unique_ptr<Job>> running;
-    PicturePtr preparing;                  ///< the picture whose mipmaps are being made, or that is uploaded
-    std::unique_ptr<Upload> uploading;     ///< handed over some rows a frame
-    std::unique_ptr<ExportJob> exporting;  ///< rendered tile by tile on the window's thread
-    std::function<void(App&, Image)> exported;
-    std::string export_title;
+    PicturePtr preparing;               ///< the picture whose mipmaps are being made, or that is uploaded
+    std::unique_ptr<Upload> uploading;  ///< handed over some rows a frame
 };
 
 /// What a thread does. It returns what the window's thread does afterwards, or nothing. Work that writes
-/// looks at `given_up` before it touches the file.
-using Work = std::function<std::function<void(App&)>(const std::atomic<bool>& given_up)>;
+/// looks at Job::given_up before it touches the file.
+using Work = std::function<std::function<void(App&)>(Job& job)>;
 
 /// Runs `work` on a thread. An Error it throws is said.
 void start_job(App& app, std::string title, JobKind kind, Work work);
@@ -62,7 +59,7 @@ void start_job(App& app, std::string title, JobKind kind, Work work);
 /// Begins to hand a picture to the renderer; App::uploaded is it when that is done.
 void prepare_picture(App& app, PicturePtr picture);
 
-/// Does the window's share of the work that is under way: a tile, what a thread has finished.
+/// Does the window's share of the work that is under way: rows of an upload, what a thread has finished.
 void advance_jobs(App& app);
 
 /// The dialog of the job that blocks, with its progress and Cancel.

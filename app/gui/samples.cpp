@@ -8,7 +8,7 @@
 #include "gui/app.h"
 #include "gui/widgets.h"
 #include "io/project.h"
-#include "render/mipmaps.h"
+#include "raster/mipmaps.h"
 
 namespace probewarp {
 
@@ -44,19 +44,18 @@ void load_thumbnails(App& app) {
     std::sort(app.samples.list.begin(), app.samples.list.end(),
               [](const auto& a, const auto& b) { return a.path < b.path; });
     for (const Sample& sample : app.samples.list)
-        start_job(
-            app, "", JobKind::background, [path = sample.path](const auto&) -> std::function<void(App&)> {
-                const auto small =
-                    std::make_shared<const std::vector<Image>>(thumbnail(read_document(path).picture->image));
-                return [small, path](App& a) {
-                    for (Sample& s : a.samples.list)
-                        if (s.path == path) {
-                            s.texture = preview_texture(*small);
-                            s.width = small->front().width;
-                            s.height = small->front().height;
-                        }
-                };
-            });
+        start_job(app, "", JobKind::background, [path = sample.path](Job&) -> std::function<void(App&)> {
+            const auto small =
+                std::make_shared<const std::vector<Image>>(thumbnail(read_document(path).picture->image));
+            return [small, path](App& a) {
+                for (Sample& s : a.samples.list)
+                    if (s.path == path) {
+                        s.texture = preview_texture(*small);
+                        s.width = small->front().width;
+                        s.height = small->front().height;
+                    }
+            };
+        });
 }
 
 void draw_sample(App& app, const Sample& sample, ImVec2 from, ImVec2 size) {

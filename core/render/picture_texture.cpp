@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "render/mipmaps.h"
+#include "raster/mipmaps.h"
 
 namespace probewarp {
 

@@ -16,7 +16,7 @@
 #include "model/probe.h"
 #include "render/drawn_mesh.h"
 #include "render/gl_objects.h"
-#include "render/picture_drawer.h"
+#include "raster/picture_drawer.h"
 #include "render/picture_texture.h"
 
 namespace probewarp {

@@ -12,10 +12,10 @@
 #include "io/image_file.h"
 #include "libraries.h"
 #include "render/context.h"
-#include "render/export.h"
-#include "render/rasterizer.h"
+#include "exporting/export.h"
+#include "raster/rasterizer.h"
 #include "render/renderer.h"
-#include "render/mipmaps.h"
+#include "raster/mipmaps.h"
 
 namespace probewarp {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "render/context.h"
-#include "render/export.h"
+#include "exporting/export.h"
 #include "scene.h"
 
 namespace probewarp {

@@ -1,5 +1,5 @@
 // The processor draws what the graphics driver draws, with every instruction set.
-#include "render/rasterizer.h"
+#include "raster/rasterizer.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "render/context.h"
-#include "render/export.h"
+#include "exporting/export.h"
 #include "scene.h"
 
 namespace probewarp {

@@ -1,5 +1,5 @@
 // The renderer's own promises: what it refuses and how it says so, and that its two ways of deforming agree.
-#include "render/mipmaps.h"
+#include "raster/mipmaps.h"
 #include "render/renderer.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 #include "model/deformation.h"
 #include "render/context.h"
 #include "render/deform_trial.h"
-#include "render/export.h"
+#include "exporting/export.h"
 
 namespace probewarp {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/scan_conversion.h"
+#include "raster/scan_conversion.h"
 
 #include <algorithm>
 #include <array>

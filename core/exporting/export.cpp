@@ -1,4 +1,4 @@
-#include "render/export.h"
+#include "exporting/export.h"
 
 #include <fmt/format.h>
 

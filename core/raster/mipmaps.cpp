@@ -1,4 +1,4 @@
-#include "render/mipmaps.h"
+#include "raster/mipmaps.h"
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>

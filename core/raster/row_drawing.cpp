@@ -1,4 +1,4 @@
-#include "render/row_drawing.h"
+#include "raster/row_drawing.h"
 
 #include <bit>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr float least_weight = 0x1p-40f;
 
 // This file is compiled once for each instruction set, all of them into one program.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "render/row_drawing.cpp"
+#define HWY_TARGET_INCLUDE "raster/row_drawing.cpp"
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "model/deformation.h"
-#include "render/footprints.h"
-#include "render/picture_drawer.h"
+#include "raster/footprints.h"
+#include "raster/picture_drawer.h"
 
 namespace probewarp {
 

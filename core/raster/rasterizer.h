@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/mesh.h"
-#include "render/picture_drawer.h"
+#include "raster/picture_drawer.h"
 
 namespace probewarp {
 

@@ -1,4 +1,4 @@
-#include "render/rasterizer.h"
+#include "raster/rasterizer.h"
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -8,8 +8,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "render/mipmaps.h"
-#include "render/row_drawing.h"
+#include "raster/mipmaps.h"
+#include "raster/row_drawing.h"
 
 namespace probewarp {
 

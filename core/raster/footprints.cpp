@@ -1,4 +1,4 @@
-#include "render/footprints.h"
+#include "raster/footprints.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "render/scan_conversion.h"
+#include "raster/scan_conversion.h"
 
 namespace probewarp {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "render/picture_drawer.h"
+#include "raster/picture_drawer.h"
 
 namespace probewarp {
 

@@ -1,0 +1,36 @@
+// A deformed document on its way into a picture's file: drawn band by band, encoded while it is drawn.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "exporting/export.h"
+#include "io/image_encoding.h"
+
+namespace probewarp {
+
+/// What the file is to be.
+struct PictureFile {
+    const ImageFormat* format = nullptr;  ///< one that is written
+    ExportSettings settings;
+    EncodeOptions encode;
+};
+
+/// What is told while a file is made. Each may throw, which gives up.
+struct ExportSteps {
+    std::function<void(const FileParts&)> write;  ///< the file's next parts
+    std::function<void()> restart;                ///< what was written is wrong: all comes once more
+    std::function<void(double)> show;             ///< the part that is drawn, [0, 1]
+};
+
+/// Draws and encodes; finish() of what it returns is the file's rest. The drawer must hold the document's
+/// picture and deformed mesh. Throws Error.
+std::unique_ptr<ImageEncoding> draw_picture_file(PictureDrawer& drawer, const Document& document,
+                                                 const Deformation& deformation, const PictureFile& file,
+                                                 const ExportSteps& steps);
+
+/// Likewise by the processor, without the drawer's overlay.
+std::unique_ptr<ImageEncoding> draw_picture_file(const Document& document, const Deformation& deformation,
+                                                 const PictureFile& file, const ExportSteps& steps);
+
+}  // namespace probewarp
