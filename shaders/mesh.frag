@@ -2,20 +2,12 @@
 // Looks up the picture at rest. The fragment's own place is exact, so interpolating the way back (rather than the
 // texture coordinate) leaves an undeformed picture at exactly its pixel centres.
 
-// Three ways: into the layer of weighted colours; STRAIGHT into a file's integers, for an opaque picture at one sample a
-// pixel, which leaves nothing to average or to see through; and that UNSHRUNK, where no mipmap can be wanted.
-#ifdef STRAIGHT_UNSHRUNK
-#define STRAIGHT
-#endif
-
 in vec2 back;
 
 uniform vec2 origin;
 uniform vec2 scale;
 uniform sampler2D picture;  // straight alpha, alpha-weighted mipmaps
-#ifndef STRAIGHT_UNSHRUNK
 uniform int last_level;
-#endif
 
 #ifdef OVERLAY
 in vec4 shade;            // colour and value
@@ -25,12 +17,7 @@ uniform float opacity;
 uniform vec3 heat_colours[4];
 #endif
 
-#ifdef STRAIGHT
-uniform float largest;  // 255 or 65535
-out uvec4 rgba;
-#else
 out vec4 layer;  // colour times weight, weight: sums of these stay right under filtering, folding and averaging
-#endif
 
 // The weight of a texel is its alpha, but never nothing: so a colour under zero alpha comes through where it is alone,
 // and vanishes (2^-40 rounds to no alpha) beside any texel that can be seen.
@@ -41,9 +28,6 @@ const float on_centre = 1.0 / 512.0;
 
 vec4 texel(int x, int y, int level) {
     vec4 colour = texelFetch(picture, ivec2(x, y), level);
-#ifdef STRAIGHT
-    return vec4(colour.rgb, 1.0);  // as below, and no sums over what is 1
-#endif
     float weight = max(colour.a, least_weight);
     return vec4(colour.rgb * weight, weight);
 }
@@ -80,9 +64,6 @@ vec3 overlaid() {
 vec4 weighted_colour() {
     vec2 pixel = 1.0 / scale;  // image pixels
     vec2 at = gl_FragCoord.xy * pixel + origin + back;
-#ifdef STRAIGHT_UNSHRUNK
-    return bilinear(at, 0);
-#else
     vec2 across = dFdx(back) + vec2(pixel.x, 0.0), down = dFdy(back) + vec2(0.0, pixel.y);
     float footprint = max(length(across), length(down));
     // Below 2 % of shrinking there is nothing to alias, and an unshrunk picture stays exact.
@@ -92,15 +73,10 @@ vec4 weighted_colour() {
     float part = level - float(fine);
     if (part > 0.0 && fine < last_level) colour = mix(colour, bilinear(at / exp2(float(fine + 1)), fine + 1), part);
     return colour;
-#endif
 }
 
 void main() {
-#ifdef STRAIGHT
-    rgba = uvec4(clamp(weighted_colour(), 0.0, 1.0) * largest + 0.5);
-#else
     layer = weighted_colour();
-#endif
 #ifdef OVERLAY
     layer.rgb = mix(layer.rgb, overlaid() * layer.a, opacity);
 #endif

@@ -105,7 +105,7 @@ ExportJob::ExportJob(PictureDrawer& drawer, const Document& document, const Defo
     : drawer_(drawer),
       settings_(settings),
       view_(export_view(document, deformation, settings)),
-      footprints_(deformation, view_) {
+      boxes_(deformation) {
     assert(settings.samples >= 1 && settings.samples <= max_samples);
     const Image& original = document.picture->image;
     like_.width = view_.width;
@@ -125,8 +125,7 @@ void ExportJob::draw_tile(Image& into, int first_row) {
     tile.width = std::min(tile_[0], view_.width - left);
     tile.height = std::min(tile_[1], view_.height - top);
     drawer_.render(into, left, top - first_row, tile,
-                   {settings_.samples, settings_.background, settings_.overlay},
-                   footprints_.runs_within(tile));
+                   {settings_.samples, settings_.background, settings_.overlay}, boxes_.within(tile));
     ++next_;
 }
 

@@ -64,7 +64,7 @@ class ExportJob {
     View view_;
     Image like_, whole_;
     bool may_be_transparent_ = true;
-    Footprints footprints_;
+    TriangleBoxes boxes_;
     std::array<int, 2> tile_{};   ///< width and height of a tile, exported pixels
     std::array<int, 2> tiles_{};  ///< along x and y
     int next_ = 0;

@@ -24,7 +24,7 @@ std::unique_ptr<ImageEncoding> draw_picture_file(PictureDrawer& drawer, const Do
 std::unique_ptr<ImageEncoding> draw_picture_file(const Document& document, const Deformation& deformation,
                                                  const PictureFile& file, const ExportSteps& steps) {
     const View view = export_view(document, deformation, file.settings);
-    Rasterizer rasterizer(document.picture->image, Footprints(deformation, view).wanted_levels());
+    Rasterizer rasterizer(document.picture->image, wanted_levels(deformation, view));
     rasterizer.set_mesh(mesh_of(deformation), deformation.now, deformation.moved);
     return draw_picture_file(rasterizer, document, deformation, file, steps);
 }

@@ -1,5 +1,5 @@
-// How much smaller a deformed mesh draws the picture than it is, so that what does not shrink goes without
-// mipmaps, which cost a software rasteriser more than all else.
+// What drawing a deformed mesh touches: which of the picture's mipmaps, and which triangles a part of the
+// target.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -10,26 +10,24 @@
 
 namespace probewarp {
 
-class Footprints {
+/// How many mipmaps can be wanted where the view is drawn: 0 where nothing in it shrinks.
+int wanted_levels(const Deformation& deformation, const View& view);
+
+/// Where a deformed mesh's triangles are.
+class TriangleBoxes {
   public:
-    /// view: of the whole export, within which all others lie
-    Footprints(const Deformation& deformation, const View& view);
+    explicit TriangleBoxes(const Deformation& deformation);
 
-    /// The mipmaps that drawing can touch: 0 where there are none.
-    int wanted_levels() const;
-
-    /// The triangles that touch the view, and perhaps some between them, in the mesh's order; one run of
-    /// everything where the mesh has not moved.
-    std::vector<TriangleRun> runs_within(const View& view) const;
+    /// The triangles that touch the view, and what is between them in the mesh's order. None where the mesh
+    /// has not moved.
+    TriangleRun within(const View& view) const;
 
   private:
-    struct Triangle {
-        glm::vec2 least, most;  ///< the box around it, image pixels
-        bool shrunk;            ///< whether shaders/mesh.frag may draw of it from a mipmap
+    struct Box {
+        glm::vec2 least, most;  ///< image pixels
     };
 
-    std::vector<Triangle> triangles_;  ///< of the mesh; one for the whole picture where it has not moved
-    double largest_ = 1;               ///< pixels of the picture that a target pixel spans at most
+    std::vector<Box> boxes_;  ///< #triangles; none where the mesh has not moved
 };
 
 }  // namespace probewarp

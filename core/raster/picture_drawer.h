@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <optional>
-#include <span>
 
 #include "model/image.h"
 #include "model/probe.h"
@@ -31,19 +30,19 @@ struct FileStyle {
 /// Some of the mesh's triangles, one after the other.
 struct TriangleRun {
     std::size_t first = 0, count = 0;
-    bool shrunk = true;  ///< false: the picture is drawn no smaller than it is, mipmaps are not wanted
 };
 
+/// Holds a picture and its deformed mesh.
 class PictureDrawer {
   public:
     virtual ~PictureDrawer() = default;
     /// Whether the picture is, everywhere.
     virtual bool is_opaque() const = 0;
 
-    /// Draws the view at (left, top) of `image`, whose depth it takes. runs: in the mesh's order, at least
-    /// what shows in the view, or where the mesh has not moved one run for all.
+    /// Draws the view at (left, top) of `image`, whose depth it takes. triangles: at least those that show in
+    /// the view; of no meaning where the mesh has not moved
     virtual void render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                        std::span<const TriangleRun> runs) = 0;
+                        TriangleRun triangles) = 0;
 };
 
 }  // namespace probewarp

@@ -70,7 +70,8 @@ struct Canvas {
 
 /// What is drawn, and how.
 struct Drawing {
-    DrawnTriangles triangles;
+    DeformedMesh mesh;
+    TriangleRun triangles;
     std::vector<Level> levels;
     View view;
     FileStyle style;
@@ -79,7 +80,7 @@ struct Drawing {
 /// Rows of an opaque picture at one sample a pixel, which leaves nothing to blend.
 template <class Sample>
 void draw_rows(const Drawing& d, const Rows& rows, const Canvas<Sample>& canvas) {
-    const auto spans = scan_convert(d.triangles, d.view, rows, int(d.levels.size()) - 1);
+    const auto spans = scan_convert(d.mesh, d.triangles, d.view, rows, int(d.levels.size()) - 1);
     const Pixel<Sample> nothing = filling<Sample>(d.style.background);
     RowLookups room(std::size_t(d.view.width));
     for (int row = rows.first; row < rows.end; ++row)
@@ -101,8 +102,8 @@ void blend_rows(const Drawing& d, const Rows& rows, const Canvas<Sample>& canvas
     View fine = d.view;  // of the samples
     fine.scale *= double(samples);
     fine.width *= samples;
-    const auto spans =
-        scan_convert(d.triangles, fine, {rows.first * samples, rows.end * samples}, int(d.levels.size()) - 1);
+    const auto spans = scan_convert(d.mesh, d.triangles, fine, {rows.first * samples, rows.end * samples},
+                                    int(d.levels.size()) - 1);
     const Pixel<Sample> background = filling<Sample>(d.style.background);
     auto of_row = spans.begin();
     for (int row = rows.first; row < rows.end; ++row) {
@@ -135,20 +136,16 @@ Rasterizer::Rasterizer(const Image& picture, int most_levels)
 void Rasterizer::set_mesh(const Mesh& mesh, std::span<const glm::vec2> now, bool moved) {
     static constexpr std::array<std::uint32_t, 6> two_triangles{0, 1, 2, 2, 1, 3};
     moved_ = moved;
-    rest_ = moved ? std::span<const glm::vec2>(mesh.rest) : corners_;
-    now_ = moved ? now : rest_;
-    triangles_ = moved ? std::span<const std::uint32_t>(mesh.triangles) : two_triangles;
+    mesh_ = moved ? DeformedMesh{mesh.rest, now, mesh.triangles}
+                  : DeformedMesh{corners_, corners_, two_triangles};
 }
 
 void Rasterizer::render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                        std::span<const TriangleRun> runs) {
+                        TriangleRun triangles) {
     assert(!style.overlay && image.bits() == picture_->bits());
     assert(left >= 0 && top >= 0 && left + view.width <= image.width && top + view.height <= image.height);
-    const TriangleRun whole{0, 2, runs.empty() || runs.front().shrunk};
-    const Drawing drawing{{rest_, now_, triangles_, moved_ ? runs : std::span(&whole, 1)},
-                          levels_of(*picture_, smaller_),
-                          view,
-                          style};
+    if (!moved_) triangles = {0, 2};
+    const Drawing drawing{mesh_, triangles, levels_of(*picture_, smaller_), view, style};
     const auto draw = [&]<class Sample>(std::vector<Sample>& rgba) {
         const std::size_t row_pixels = std::size_t(image.width);
         const Canvas<Sample> canvas{

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/mesh.h"
-#include "raster/picture_drawer.h"
+#include "raster/triangles.h"
 
 namespace probewarp {
 
@@ -24,7 +24,7 @@ class Rasterizer final : public PictureDrawer {
 
     /// Without an overlay. Shared between all cores.
     void render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                std::span<const TriangleRun> runs) override;
+                TriangleRun triangles) override;
 
   private:
     Rasterizer(const Rasterizer&) = delete;
@@ -35,8 +35,7 @@ class Rasterizer final : public PictureDrawer {
     std::optional<Image> thick_;  ///< the picture, where it is one pixel wide or high
     std::vector<Image> smaller_;
     std::array<glm::vec2, 4> corners_;  ///< of the picture
-    std::span<const glm::vec2> rest_, now_;
-    std::span<const std::uint32_t> triangles_;
+    DeformedMesh mesh_;
     bool moved_ = false;
 };
 

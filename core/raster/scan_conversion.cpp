@@ -53,54 +53,31 @@ void cover_rows(std::array<dvec2, 3> corners, const Rows& rows, int width, const
     }
 }
 
-/// The target's point t shows the picture at rest at `at + across t.x + down t.y`, image pixels.
-struct Lookup {
-    dvec2 at, across, down;
-};
-
-/// corners: target pixels; back: image pixels, from where each is to where it was
-Lookup lookup_of(const std::array<dvec2, 3>& corners, const std::array<dvec2, 3>& back, const View& view) {
-    // The way back is 0 all over a triangle that has not moved, which then shows the picture's own pixels.
-    const dvec2 p = corners[1] - corners[0], q = corners[2] - corners[0];
-    const dvec2 u = back[1] - back[0], v = back[2] - back[0];
-    const double area = p.x * q.y - p.y * q.x;
-    const dvec2 across = (u * q.y - v * p.y) / area, down = (v * p.x - u * q.x) / area;
-    return {view.origin + back[0] - across * corners[0].x - down * corners[0].y,
-            dvec2(1 / view.scale.x, 0) + across, dvec2(0, 1 / view.scale.y) + down};
-}
-
 /// As shaders/mesh.frag chooses it.
-float level_of(const Lookup& lookup, int last_level) {
-    const double footprint =
-        std::max(std::hypot(lookup.across.x, lookup.across.y), std::hypot(lookup.down.x, lookup.down.y));
-    return footprint < 1.02 ? 0.0f : float(std::min(std::log2(footprint), double(last_level)));
+float level_of(double pixels, int last_level) {
+    return pixels < 1.02 ? 0.0f : float(std::min(std::log2(pixels), double(last_level)));
 }
 
 }  // namespace
 
-std::vector<std::vector<Span>> scan_convert(const DrawnTriangles& triangles, const View& view,
+std::vector<std::vector<Span>> scan_convert(const DeformedMesh& mesh, TriangleRun triangles, const View& view,
                                             const Rows& rows, int last_level) {
     std::vector<std::vector<Span>> spans(std::size_t(rows.end - rows.first));
-    const auto convert = [&](std::size_t triangle, bool shrunk) {
-        std::array<dvec2, 3> corners, on_grid, back;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t vertex = triangles.corners[triangle * 3 + k];
-            const dvec2 now(triangles.now[vertex]);
-            corners[k] = (now - view.origin) * view.scale;
-            on_grid[k] = snapped(corners[k]);
-            back[k] = dvec2(triangles.rest[vertex]) - now;
-        }
+    for (std::size_t i = triangles.first; i < triangles.first + triangles.count; ++i) {
+        const Corners corners = corners_of(mesh, i);
+        std::array<dvec2, 3> on_grid;
+        for (std::size_t k = 0; k < 3; ++k) on_grid[k] = snapped((corners.now[k] - view.origin) * view.scale);
         const auto [least, most] = std::minmax({on_grid[0].y, on_grid[1].y, on_grid[2].y});
-        if (least >= rows.end || most <= rows.first) return;
-        const Lookup lookup = lookup_of(corners, back, view);
-        const float level = shrunk ? level_of(lookup, last_level) : 0.0f;
+        if (least >= rows.end || most <= rows.first) continue;
+        const Lookup lookup = lookup_of(corners, view);
+        const double pixels = footprint(lookup);
+        if (!std::isfinite(pixels)) continue;  // no area
+        const float level = level_of(pixels, last_level);
         cover_rows(on_grid, rows, view.width, [&](int row, int first, int end) {
             const dvec2 at = lookup.at + lookup.across * (first + 0.5) + lookup.down * (row + 0.5);
             spans[std::size_t(row - rows.first)].push_back({first, end, at, lookup.across, level});
         });
-    };
-    for (const TriangleRun& run : triangles.runs)
-        for (std::size_t i = run.first; i < run.first + run.count; ++i) convert(i, run.shrunk);
+    }
     return spans;
 }
 

@@ -2,20 +2,11 @@
 // place of the picture at rest they show.
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <vector>
 
-#include "raster/picture_drawer.h"
+#include "raster/triangles.h"
 
 namespace probewarp {
-
-/// The mesh as it is drawn.
-struct DrawnTriangles {
-    std::span<const glm::vec2> rest, now;    ///< #vertices, image pixels
-    std::span<const std::uint32_t> corners;  ///< #triangles x 3
-    std::span<const TriangleRun> runs;       ///< what may show
-};
 
 /// Whole rows of a view.
 struct Rows {
@@ -33,7 +24,7 @@ struct Span {
 /// #rows, each with its spans in the order of their triangles. A pixel is in a triangle where its centre is;
 /// of triangles with a common side one has a pixel on it, never both and never none. last_level: the smallest
 /// mipmap
-std::vector<std::vector<Span>> scan_convert(const DrawnTriangles& triangles, const View& view,
+std::vector<std::vector<Span>> scan_convert(const DeformedMesh& mesh, TriangleRun triangles, const View& view,
                                             const Rows& rows, int last_level);
 
 }  // namespace probewarp

@@ -93,8 +93,8 @@ PictureTexture PictureUpload::take() {
     return std::move(texture_);
 }
 
-PictureTexture upload_picture(const Image& image, int most_levels) {
-    const std::vector<Image> levels = smaller_levels(image, most_levels);
+PictureTexture upload_picture(const Image& image) {
+    const std::vector<Image> levels = smaller_levels(image);
     PictureUpload upload(image, levels);
     while (!upload.done()) upload.step();
     return upload.take();

@@ -1,7 +1,6 @@
 // Pictures as the graphics driver holds them: mipmaps, and the way there in small steps.
 #pragma once
 
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -40,8 +39,8 @@ class PictureUpload {
     int level_ = 0, row_ = 0;
 };
 
-/// All of it at once, with at most so many mipmaps.
-PictureTexture upload_picture(const Image& image, int most_levels = std::numeric_limits<int>::max());
+/// All of it at once.
+PictureTexture upload_picture(const Image& image);
 
 /// A texture for the window's toolkit to draw, smoothly scaled. levels: a picture and its mipmaps, down to
 /// one pixel. The driver could make these, but a software rasteriser would compile a shader to do so.

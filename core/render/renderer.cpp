@@ -54,9 +54,6 @@ void clear_window(int width, int height, glm::vec3 colour) {
 Renderer::Renderer()
     : mesh_program_([] { return make_program(shaders::mesh_vert, shaders::mesh_frag); }),
       mesh_overlay_program_([] { return make_program(shaders::mesh_vert, shaders::mesh_frag, "OVERLAY"); }),
-      straight_program_([] { return make_program(shaders::mesh_vert, shaders::mesh_frag, "STRAIGHT"); }),
-      straight_unshrunk_program_(
-          [] { return make_program(shaders::mesh_vert, shaders::mesh_frag, "STRAIGHT_UNSHRUNK"); }),
       resolve_program_([] { return make_program(shaders::screen_vert, shaders::resolve_frag); }),
       display_program_([] { return make_program(shaders::screen_vert, shaders::display_frag); }),
       lines_program_([] { return make_program(shaders::mesh_vert, shaders::lines_frag); }),
@@ -153,38 +150,9 @@ void Renderer::draw_picture() {
 }
 
 void Renderer::render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                      std::span<const TriangleRun> runs) {
-    const bool with_overlay = style.overlay && overlay_style_;
-    if (!picture_.opaque || style.samples > 1 || with_overlay) {
-        draw(view, style.samples, with_overlay);
-        return read_back(image, left, top, view, style.samples, style.background);
-    }
-    draw_straight(view, image.bits() == 16, style.background, runs);
-    read_integers(image, left, top, view);
-}
-
-void Renderer::draw_straight(const View& view, bool deep, std::optional<Colour> background,
-                             std::span<const TriangleRun> runs) {
-    resize(integers_, view.width, view.height, deep ? GL_RGBA16UI : GL_RGBA8UI);
-    begin(integers_);
-    const Colour fill = background.value_or(Colour{});
-    const GLuint one = deep ? 257 : 1;
-    const GLuint filled[4]{fill.r * one, fill.g * one, fill.b * one, 255 * one}, nothing[4]{};
-    glClearBufferuiv(GL_COLOR, 0, background ? filled : nothing);
-    glBindTexture(GL_TEXTURE_2D, picture_.texture.name());
-    for (const TriangleRun& run : runs) {
-        const GlProgram& program = (run.shrunk ? straight_program_ : straight_unshrunk_program_).get();
-        glUseProgram(program.name());
-        set_view(program, view, 1);
-        set(program, "picture", 0);
-        set(program, "largest", deep ? 65535.0f : 255.0f);
-        if (run.shrunk) set(program, "last_level", picture_.last_level);
-        if (moved_)
-            mesh_.draw(run.first, run.count);
-        else
-            draw_picture();
-    }
-    check_gl("drawing the picture");
+                      TriangleRun) {
+    draw(view, style.samples, style.overlay);
+    read_back(image, left, top, view, style.samples, style.background);
 }
 
 void Renderer::read_back(Image& image, int left, int top, const View& view, int samples,

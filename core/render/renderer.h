@@ -14,9 +14,9 @@
 #include "model/image.h"
 #include "model/mesh.h"
 #include "model/probe.h"
+#include "raster/picture_drawer.h"
 #include "render/drawn_mesh.h"
 #include "render/gl_objects.h"
-#include "raster/picture_drawer.h"
 #include "render/picture_texture.h"
 
 namespace probewarp {
@@ -76,10 +76,9 @@ class Renderer final : public PictureDrawer {
     void read_back(Image& image, int left, int top, const View& view, int samples,
                    std::optional<Colour> background);
 
-    /// draw and read_back. An opaque picture at one sample a pixel has nothing to blend or average and is
-    /// drawn into the integers at once, to the same values.
+    /// draw and read_back.
     void render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                std::span<const TriangleRun> runs) override;
+                TriangleRun triangles) override;
 
     /// Shows what draw drew with one sample a pixel: over a checkerboard of squares of `square` pixels inside
     /// the image's frame, dimmed beside it; with the mesh's lines where asked. Returns the texture that holds
@@ -93,14 +92,11 @@ class Renderer final : public PictureDrawer {
     void set_view(const GlProgram& program, const View& view, int samples) const;
     void use_mesh_program(const View& view, int samples, bool with_overlay);
     void draw_picture();
-    void draw_straight(const View& view, bool deep, std::optional<Colour> background,
-                       std::span<const TriangleRun> runs);
     void resolve(const View& view, bool deep, int samples, std::optional<Colour> background);
     void read_integers(Image& image, int left, int top, const View& view);
     void draw_lines(const View& view, glm::vec4 colour);
 
-    LazyProgram mesh_program_, mesh_overlay_program_, straight_program_, straight_unshrunk_program_,
-        resolve_program_, display_program_, lines_program_;
+    LazyProgram mesh_program_, mesh_overlay_program_, resolve_program_, display_program_, lines_program_;
     GlVertexArray picture_array_, empty_array_;
     GlBuffer picture_corners_;
     DrawnMesh mesh_;

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "render/context.h"
 #include "exporting/export.h"
+#include "render/context.h"
 #include "scene.h"
 
 namespace probewarp {
@@ -63,8 +63,7 @@ Image drawn_by_processor(const Scene& scene, const View& view, const FileStyle& 
     Rasterizer rasterizer(picture, 31);
     rasterizer.set_mesh(mesh_of(scene.deformation), scene.deformation.now, scene.deformation.moved);
     Image image = scene.blank(view);
-    const TriangleRun all = everything(scene.deformation);
-    rasterizer.render(image, 0, 0, view, style, std::span(&all, 1));
+    rasterizer.render(image, 0, 0, view, style, everything(scene.deformation));
     return image;
 }
 
@@ -114,6 +113,18 @@ TEST(Rasterizer, LaysLaterTrianglesOverEarlierOnes) {
     Document folded = pulled(noise<std::uint8_t>(300, 200), 0.4);
     folded.probes[0].now.x += 180;
     expect_as_the_driver(folded, 1);
+}
+
+TEST(Rasterizer, LeavesTrianglesWithoutAnAreaOut) {
+    const auto context = open_context("osmesa");
+    Scene scene(pulled(noise<std::uint8_t>(60, 40), 0.4));
+    const View view = scene.whole(1);
+    const Image nothing = scene.blank(view);
+    for (glm::vec2& now : scene.deformation.now) now = {30.5f, now.y};
+    with_every_instruction_set([&] { EXPECT_EQ(drawn_by_processor(scene, view).rgba, nothing.rgba); });
+    // Corners that have an area on the grid of 1/256 of a pixel, but none that tells what to show.
+    for (glm::vec2& now : scene.deformation.now) now = {30.501f + now.y * 1e-4f, now.y};
+    with_every_instruction_set([&] { drawn_by_processor(scene, view); });
 }
 
 TEST(Rasterizer, DrawsThinPictures) {

@@ -12,10 +12,10 @@
 #include <numbers>
 #include <random>
 
+#include "exporting/export.h"
 #include "model/deformation.h"
 #include "render/context.h"
 #include "render/deform_trial.h"
-#include "exporting/export.h"
 
 namespace probewarp {
 namespace {

@@ -56,9 +56,9 @@ inline Document pulled(PicturePtr picture, double angle) {
     return document;
 }
 
-/// All triangles, with mipmaps where they are wanted.
+/// All triangles.
 inline TriangleRun everything(const Deformation& deformation) {
-    return {0, mesh_of(deformation).triangles.size() / 3, true};
+    return {0, mesh_of(deformation).triangles.size() / 3};
 }
 
 /// A view's pixels, as deep as the image.
@@ -94,10 +94,9 @@ struct Scene {
         return view;
     }
 
-    /// What render draws, of all triangles alike.
+    /// What the driver draws.
     void render(Image& image, const View& view, const FileStyle& style = {}) {
-        const TriangleRun all = everything(deformation);
-        renderer.render(image, 0, 0, view, style, std::span(&all, 1));
+        renderer.render(image, 0, 0, view, style, everything(deformation));
     }
 
     Image blank(const View& view) const { return probewarp::blank(document.picture->image, view); }
