@@ -1,7 +1,11 @@
 #include "model/image.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <cassert>
+#include <functional>
 #include <limits>
 
 namespace probewarp {
@@ -40,7 +44,17 @@ bool is_opaque(std::span<const std::uint8_t> rgba) { return all_opaque(rgba); }
 bool is_opaque(std::span<const std::uint16_t> rgba) { return all_opaque(rgba); }
 
 bool has_alpha(const Image& image) {
-    return std::visit([](const auto& samples) { return !is_opaque(std::span(samples)); }, image.rgba);
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    constexpr std::size_t at_once = std::size_t{1} << 20;  // samples
+    const auto opaque = [](const auto& samples) {
+        return oneapi::tbb::parallel_reduce(
+            Range(0, samples.size() / 4, at_once / 4), true,
+            [&](const Range& pixels, bool so_far) {
+                return so_far && is_opaque(std::span(samples).subspan(4 * pixels.begin(), 4 * pixels.size()));
+            },
+            std::logical_and<>());
+    };
+    return !std::visit(opaque, image.rgba);
 }
 
 }  // namespace probewarp

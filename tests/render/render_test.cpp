@@ -16,6 +16,7 @@
 #include "model/deformation.h"
 #include "render/context.h"
 #include "render/deform_trial.h"
+#include "scene.h"
 
 namespace probewarp {
 namespace {
@@ -74,6 +75,35 @@ TEST(Mipmaps, AreAlphaWeightedMeansDownToOnePixel) {
     ASSERT_EQ(levels.size(), 2u);
     EXPECT_EQ(std::get<0>(levels[0].rgba), (std::vector<std::uint8_t>{255, 0, 0, 100, 128, 128, 128, 255}));
     EXPECT_EQ(levels[1].width * levels[1].height, 1);
+}
+
+/// The alpha-weighted mean of four pixels in double, rounded.
+std::array<int, 4> mean_of(const Image& image, int x, int y) {
+    double weighted[3]{}, plain[3]{}, alpha = 0;
+    for (const int dy : {0, 1})
+        for (const int dx : {0, 1}) {
+            const auto p =
+                pixel(image, std::min(2 * x + dx, image.width - 1), std::min(2 * y + dy, image.height - 1));
+            for (std::size_t c = 0; c < 3; ++c) weighted[c] += double(p[c]) * p[3], plain[c] += p[c];
+            alpha += p[3];
+        }
+    std::array<int, 4> mean{};
+    for (std::size_t c = 0; c < 3; ++c)
+        mean[c] = int(std::floor((alpha > 0 ? weighted[c] / alpha : plain[c] / 4) + 0.5));
+    mean[3] = int(std::floor(alpha / 4 + 0.5));
+    return mean;
+}
+
+TEST(Mipmaps, OfOpaqueAndOfClearPicturesAreMeansToo) {
+    for (const auto& picture : {noise<std::uint8_t>(37, 21), noise<std::uint16_t>(37, 21),
+                                translucent<std::uint8_t>(37, 21), translucent<std::uint16_t>(1, 21)}) {
+        const Image& image = picture->image;
+        const Image smaller = smaller_levels(image, 1).at(0);
+        ASSERT_EQ(smaller.height, 10);
+        for (int y = 0; y < smaller.height; ++y)
+            for (int x = 0; x < smaller.width; ++x)
+                ASSERT_EQ(pixel(smaller, x, y), mean_of(image, x, y)) << x << ", " << y;
+    }
 }
 
 /// A picture whose every pixel says where it is: red is x, green is y, in 65535ths of the side.
