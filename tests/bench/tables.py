@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Makes the tables of docs/performance.md from Google Benchmark's JSON, with what each figure is to reach beside it:
-tables.py deformation FILE, or tables.py others FILE. Every figure is a ratio within one run, but for a few times that are
+tables.py deformation FILE, or tables.py others FILE [FILE of the files' benchmarks with a photograph]. Every figure is a ratio within one run, but for a few times that are
 asked for as times; the deformation's are the medians of their repetitions."""
 
 import json
@@ -38,6 +38,7 @@ OTHERS = [
     ("render JPEG to PNG: time over decoding and encoding", "program_against_its_files/jpeg", "1/files_time", "<= 1.5"),
     ("render PNG to PNG: likewise", "program_against_its_files/png", "1/files_time", "<= 1.5"),
     ("render: memory over the decoded picture's", "program_against_its_files/jpeg", "memory", "<= 3"),
+    ("drawing alone: the processor's speed over a software rasteriser's", "draw_by_processor", "over_driver", ""),
     ("render of 512 pixels, ms", "render_of_512_pixels", "real_time", "<= 250"),
     ("first frame of the window, ms", "start_to_window", "real_time", "<= 300"),
     ("first frame with a picture, ms", "start_to_picture", "real_time", ""),
@@ -113,21 +114,30 @@ def deformation(results):
     blends(results["benchmarks"])
 
 
-def others(results):
-    found = {}
-    for b in results["benchmarks"]:  # "dab_to_vertices/100/iterations:189", "drag_frame_by_processor/cells:100" and the like
-        found["/".join(part for part in b["name"].replace("cells:", "").split("/") if ":" not in part and not part.endswith("_time"))] = b
+def by_name(results):
+    """{name: its benchmark}, of "dab_to_vertices/100/iterations:189", "drag_frame_by_processor/cells:100" and the like"""
+    return {"/".join(part for part in b["name"].replace("cells:", "").split("/") if ":" not in part and not part.endswith("_time")): b
+            for b in results["benchmarks"]}
+
+
+def field_of(found, benchmark, field):
+    if benchmark not in found or found[benchmark].get("error_occurred"):
+        return "-"
+    if field.startswith("1/"):
+        return figure(1 / found[benchmark][field[2:]])
+    return figure(found[benchmark][field])
+
+
+def others(results, photograph=None):
+    found = by_name(results)
+    with_photograph = by_name(photograph) if photograph else {}
 
     def of(benchmark, field):
-        if benchmark not in found or found[benchmark].get("error_occurred"):
-            return "-"
-        if field.startswith("1/"):
-            return figure(1 / found[benchmark][field[2:]])
-        return figure(found[benchmark][field])
+        return field_of(found, benchmark, field)
 
-    print("| 24 megapixels, and the window | measured | to reach |\n|---|---|---|")
+    print("| 24 megapixels, and the window | measured | with a photograph | to reach |\n|---|---|---|---|")
     for row, benchmark, field, target in OTHERS:
-        print(f"| {row} | {of(benchmark, field)} | {target} |")
+        print(f"| {row} | {of(benchmark, field)} | {field_of(with_photograph, benchmark, field)} | {target} |")
     print("\n| weights, ms | " + " | ".join(SCHEMES) + " |\n|---|" + "---|" * len(SCHEMES))
     for row, pattern in SCHEME_COSTS:
         print(f"| {row} | " + " | ".join(of(pattern.format(scheme), "real_time") for scheme in SCHEMES) + " |")
@@ -137,8 +147,11 @@ def others(results):
 
 
 def main():
-    with open(sys.argv[2], encoding="utf-8") as file:
-        {"deformation": deformation, "others": others}[sys.argv[1]](json.load(file))
+    results = []
+    for name in sys.argv[2:]:
+        with open(name, encoding="utf-8") as file:
+            results.append(json.load(file))
+    {"deformation": deformation, "others": others}[sys.argv[1]](*results)
 
 
 if __name__ == "__main__":
