@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/arguments.h"
+#include "render/driver_drawing.h"
 #include "render/overlay.h"
 
 namespace probewarp {
@@ -74,11 +75,11 @@ bool drawn_by_processor(const RenderPlan& plan) {
 
 }  // namespace
 
-/// Hands the document's picture and deformed mesh to the renderer, which is made where there is none.
-void Drawer::hold(const Document& document, const Deformation& deformation) {
+/// Hands the picture and its deformed mesh to the renderer, which is made where there is none.
+void Drawer::hold(const Deformation& deformation) {
     if (!offscreen_) offscreen_.emplace(plan_.options.backend);
     Renderer& renderer = offscreen_->renderer;
-    const Image& image = document.picture->image;
+    const Image& image = deformation.source.picture->image;
     renderer.set_picture(upload_picture(image));
     renderer.set_mesh(mesh_of(deformation));
     if (plan_.options.deform == "shader") {
@@ -90,13 +91,16 @@ void Drawer::hold(const Document& document, const Deformation& deformation) {
     show_heat(renderer, deformation, plan_.options);
 }
 
-std::unique_ptr<ImageEncoding> Drawer::draw(const Document& document, const Deformation& deformation,
-                                            Output& output, const std::function<void(double)>& show) {
+std::unique_ptr<ImageEncoding> Drawer::draw(const Deformation& deformation, Output& output,
+                                            const std::function<void(double)>& show) {
     const ExportSteps steps{[&](const FileParts& parts) { output.write(parts); }, [&] { output.restart(); },
                             show};
-    if (drawn_by_processor(plan_)) return draw_picture_file(document, deformation, plan_.file, steps);
-    hold(document, deformation);
-    return draw_picture_file(offscreen_->renderer, document, deformation, plan_.file, steps);
+    const PictureFile& file = plan_.file;
+    if (drawn_by_processor(plan_)) return draw_picture_file(deformation, file, steps);
+    hold(deformation);
+    const View view = export_view(deformation, file.settings);
+    DriverDrawing drawing(offscreen_->renderer, view, file_style(file.settings));
+    return draw_picture_file(drawing, deformation, view, file, steps);
 }
 
 }  // namespace probewarp

@@ -1,5 +1,4 @@
-// What `probewarp render` has one of, however many pictures it renders: the context, the renderer, the
-// progress.
+// What `probewarp render` has one of, however many pictures it renders: what draws them, the progress.
 #pragma once
 
 #include <chrono>
@@ -61,7 +60,8 @@ struct OffscreenRenderer {
     explicit OffscreenRenderer(const std::string& backend) : context(open_context(backend)) {}
 };
 
-/// Draws one document after the other, all on the thread that made it.
+/// Draws one deformed document after the other: the processor, or where it cannot a graphics driver, on the
+/// thread that made it.
 class Drawer {
   public:
     /// The plan must outlive it.
@@ -69,11 +69,11 @@ class Drawer {
 
     /// Draws, while what is drawn already is being encoded and written; finish() of what it returns is still
     /// to be written. show: called with the part that is done. Throws Error.
-    std::unique_ptr<ImageEncoding> draw(const Document& document, const Deformation& deformation,
-                                        Output& output, const std::function<void(double)>& show);
+    std::unique_ptr<ImageEncoding> draw(const Deformation& deformation, Output& output,
+                                        const std::function<void(double)>& show);
 
   private:
-    void hold(const Document& document, const Deformation& deformation);
+    void hold(const Deformation& deformation);
 
     const RenderPlan& plan_;
     std::optional<OffscreenRenderer> offscreen_;  ///< once there was need of it

@@ -130,15 +130,15 @@ RenderPlan plan_of(const RenderOptions& o, const ImageFormat& format) {
     return plan;
 }
 
-void render_picture(const RenderOptions& o, const ImageFormat& format, const Document& document,
-                    const Deformation& deformation, Timings& timings) {
+void render_picture(const RenderOptions& o, const ImageFormat& format, const Deformation& deformation,
+                    Timings& timings) {
     const RenderPlan plan = plan_of(o, format);
-    export_view(document, deformation,
+    export_view(deformation,
                 plan.file.settings);  // refuses what is too large before anything is opened
     Progress progress(o.quiet);
     Output output(output_path(o), timings);
     const auto encoding = timings.measure(Stage::draw, [&] {
-        return Drawer(plan).draw(document, deformation, output, [&](double part) { progress.show(part); });
+        return Drawer(plan).draw(deformation, output, [&](double part) { progress.show(part); });
     });
     output.write(timings.measure(Stage::encode, [&] { return encoding->finish(); }));
     output.finish();
@@ -159,7 +159,7 @@ void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
 
     Deformation deformation;
     timings.measure(Stage::weights, [&] { update(deformation, document); });
-    if (format.kind == Kind::image) return render_picture(o, *format.image, document, deformation, timings);
+    if (format.kind == Kind::image) return render_picture(o, *format.image, deformation, timings);
     const std::string text = encode_obj(document, deformation);
     write_output(o, std::as_bytes(std::span(text)), timings);
 }

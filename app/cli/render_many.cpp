@@ -1,6 +1,5 @@
-// `probewarp render --image A B C`: many pictures under the same probes, one context. Pictures are decoded,
-// encoded and written by all cores, while one thread draws one after the other; one that fails stops no
-// other.
+// `probewarp render --image A B C`: many pictures under the same probes. Pictures are decoded, encoded and
+// written by all cores, while one after the other is drawn; one that fails stops no other.
 #include "cli/render_many.h"
 
 #include <fmt/format.h>
@@ -128,7 +127,7 @@ class Batch {
             timings_.measure(Stage::weights, [&] { deform(work.document); });
             work.file.emplace(work.output, timings_);
             work.encoding = timings_.measure(Stage::draw, [&] {
-                return drawer_.draw(work.document, deformation_, *work.file, [&](double part) {
+                return drawer_.draw(deformation_, *work.file, [&](double part) {
                     progress_.show((double(index) + part) / double(works_.size()));
                 });
             });

@@ -55,7 +55,7 @@ void open_now(App& app, const fs::path& path) {
 
 void save_to(App& app, fs::path path, std::function<void(App&)> then) {
     for (const auto& job : app.jobs.running)
-        if (job->kind == JobKind::writing)
+        if (job->kind == JobKind::writing && !job->given_up)
             return say(app, Tone::hint, "The last file is still being written.");
     const unsigned long opened = app.editor.opened;
     const Document document = app.editor.document;
@@ -235,8 +235,9 @@ bool write_picture(const Deformation& shape, const PictureFile& file, const fs::
     };
     const auto show = [&](double part) { job.progress = float(part); };
     try {
-        write(
-            draw_picture_file(shape.source, shape, file, {write, [&] { output.restart(); }, show})->finish());
+        const auto encoding = draw_picture_file(shape, file, {write, [&] { output.restart(); }, show});
+        job.progress = -1;  // how long the rest of the file takes nobody knows
+        write(encoding->finish());
     } catch (const GivenUp&) {
         return false;
     }

@@ -86,16 +86,15 @@ void draw_shown(App& app, const Shown& before) {
     view.origin = -now.view.corner / now.view.zoom;
     view.width = now.size.x;
     view.height = now.size.y;
-    const auto draw = [&] {
-        renderer.draw(view, 1, true);
-        app.shown_texture =
-            renderer.display(view, display_colours(app.theme), double(app.px(12)), now.bound && now.mesh);
+    const auto draw = [&](int first_column) {
+        renderer.draw(view, 1, true, first_column);
+        app.shown_texture = renderer.display(view, display_colours(app.theme), double(app.px(12)),
+                                             now.bound && now.mesh, first_column);
     };
-    draw();
+    draw(0);
     if (now.compared.empty()) return;
     renderer.set_positions(compared_positions(editor), editor.deformation.moved);
-    view.first_column = now.divider;
-    draw();
+    draw(now.divider);
 }
 
 void update_texture(App& app, glm::ivec2 size) {

@@ -42,15 +42,13 @@ std::string export_trouble(const App& app) {
     const ExportDialog& dialog = app.export_dialog;
     const std::filesystem::path path = export_path(app);
     const ImageFormat* format = image_format_of(path);
-    if (!is_obj(path) && app.uploaded != app.editor.document.picture)
-        return "The picture is still being prepared.";
     if (auto reason = why_not_deformed(app); !reason.empty()) return reason;
     if (!is_obj(path) && (!format || !format->encode))
         return "The name must end with .png, .jpg, .bmp, .tga or .obj.";
     std::error_code ignored;
     if (!std::filesystem::is_directory(path.parent_path(), ignored)) return "There is no such folder.";
     try {
-        export_view(app.editor.document, app.editor.deformation, dialog.settings);
+        export_view(app.editor.deformation, dialog.settings);
     } catch (const Error& error) {
         return error.what();
     }
@@ -199,7 +197,7 @@ void draw_export_dialog(App& app) {
     else if (dialog.overwrite_asked)
         ImGui::Text("This file exists and will be replaced. Press Export once more.");
     else {
-        const View view = export_view(app.editor.document, app.editor.deformation, dialog.settings);
+        const View view = export_view(app.editor.deformation, dialog.settings);
         ImGui::Text("%d × %d pixels, %d bits a channel", view.width, view.height,
                     app.editor.document.picture->image.bits());
     }

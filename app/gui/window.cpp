@@ -392,6 +392,10 @@ void draw_frame(App& app) {
 
 /// Sleeps until there is something to do: idle, the program uses no processor time.
 void wait_for_events(App& app) {
+    if (is_busy(app) && !app.jobs.uploading) {  // leaves the processor to those who work
+        glfwWaitEventsTimeout(0.03);
+        return app.wake();
+    }
     if (app.frames_wanted > 0 || wants_trial(app)) return glfwPollEvents();
     const double message = next_message_change(app);
     const double caret = ImGui::GetIO().WantTextInput ? 0.3 : -1;  // a text field's caret blinks

@@ -12,9 +12,8 @@ namespace probewarp {
 
 namespace {
 
-/// Texels along a tile's sides: wide and low, so that whole rows are soon done. They are constants, so that
-/// the same document gives the same bytes everywhere.
-constexpr int layer_width = 4096, layer_height = 256;
+/// Rows of samples in a band: enough for all cores, few enough that what is drawn is soon encoded.
+constexpr int band_sample_rows = 256;
 
 struct Box {
     glm::dvec2 least, most;  ///< image pixels
@@ -44,8 +43,8 @@ void check_export_size(double width, double height, int bits) {
 
 }  // namespace
 
-View export_view(const Document& document, const Deformation& deformation, const ExportSettings& settings) {
-    const Image& image = document.picture->image;
+View export_view(const Deformation& deformation, const ExportSettings& settings) {
+    const Image& image = deformation.source.picture->image;
     Box box{{0, 0}, {image.width, image.height}};
     if (settings.canvas == Canvas::fit) box = bounds(deformation);
     const glm::dvec2 extent{std::max(1.0, box.most.x - box.least.x), std::max(1.0, box.most.y - box.least.y)};
@@ -100,51 +99,29 @@ Image blank(const Image& like, int rows) {
 
 }  // namespace
 
-ExportJob::ExportJob(PictureDrawer& drawer, const Document& document, const Deformation& deformation,
-                     const ExportSettings& settings)
-    : drawer_(drawer),
-      settings_(settings),
-      view_(export_view(document, deformation, settings)),
-      boxes_(deformation) {
+FileStyle file_style(const ExportSettings& settings) {
     assert(settings.samples >= 1 && settings.samples <= max_samples);
-    const Image& original = document.picture->image;
-    like_.width = view_.width;
-    like_.height = view_.height;
+    return {settings.samples, settings.background, settings.overlay};
+}
+
+ExportJob::ExportJob(PictureDrawer& drawer, const Deformation& deformation, const View& view,
+                     const FileStyle& style)
+    : drawer_(drawer),
+      may_be_transparent_(!style.background && !(drawer.is_opaque() && covers(deformation, view))),
+      band_rows_(std::max(1, band_sample_rows / style.samples)) {
+    const Image& original = deformation.source.picture->image;
+    like_.width = view.width;
+    like_.height = view.height;
     like_.icc = original.icc;
     like_.resolution = original.resolution;
     if (original.bits() == 16) like_.rgba = std::vector<std::uint16_t>();
-    may_be_transparent_ = !settings.background && !(drawer.is_opaque() && covers(deformation, view_));
-    tile_ = {layer_width / settings.samples, layer_height / settings.samples};
-    tiles_ = {(view_.width + tile_[0] - 1) / tile_[0], (view_.height + tile_[1] - 1) / tile_[1]};
-}
-
-void ExportJob::draw_tile(Image& into, int first_row) {
-    const int left = next_ % tiles_[0] * tile_[0], top = next_ / tiles_[0] * tile_[1];
-    View tile = view_;
-    tile.origin += glm::dvec2(left, top) / view_.scale;
-    tile.width = std::min(tile_[0], view_.width - left);
-    tile.height = std::min(tile_[1], view_.height - top);
-    drawer_.render(into, left, top - first_row, tile,
-                   {settings_.samples, settings_.background, settings_.overlay}, boxes_.within(tile));
-    ++next_;
-}
-
-void ExportJob::step() {
-    assert(!done());
-    if (next_ == 0) whole_ = blank(like_, like_.height);
-    draw_tile(whole_, 0);
-}
-
-Image ExportJob::take() {
-    assert(done());
-    return std::move(whole_);
 }
 
 Image ExportJob::next_band() {
-    assert(!done() && next_ % tiles_[0] == 0);
-    const int top = next_ / tiles_[0] * tile_[1];
-    Image band = blank(like_, std::min(tile_[1], like_.height - top));
-    for (int i = 0; i < tiles_[0]; ++i) draw_tile(band, top);
+    assert(!done());
+    Image band = blank(like_, std::min(band_rows_, like_.height - next_row_));
+    drawer_.draw_rows(next_row_, band);
+    next_row_ += band.height;
     return band;
 }
 

@@ -1,11 +1,10 @@
-// Exporting: what a deformed document looks like as a picture of its own, rendered tile by tile.
+// Exporting: what a deformed document looks like as a picture of its own, drawn band by band.
 #pragma once
 
 #include <array>
 #include <optional>
 
 #include "model/deformation.h"
-#include "raster/footprints.h"
 #include "raster/picture_drawer.h"
 
 namespace probewarp {
@@ -27,47 +26,36 @@ struct ExportSettings {
     bool overlay = false;              ///< with the drawer's overlay over the picture
 };
 
-/// What the whole export shows. Throws Error where it would be larger than a picture may be.
-View export_view(const Document& document, const Deformation& deformation, const ExportSettings& settings);
+/// What the export of a deformed document shows. Throws Error where it would be larger than a picture may be.
+View export_view(const Deformation& deformation, const ExportSettings& settings);
 
-/// One export under way: the drawer must hold the document's picture and deformed mesh, and be left alone
-/// until done. Tiles keep each step short and the size unlimited by textures.
+FileStyle file_style(const ExportSettings& settings);
+
+/// One export under way, in bands of whole rows.
 class ExportJob {
   public:
-    /// Looks at the size, depth, profile and resolution of the document's picture, not at its pixels.
-    ExportJob(PictureDrawer& drawer, const Document& document, const Deformation& deformation,
-              const ExportSettings& settings);
+    /// drawer: of the deformation, in this view and style; left alone until done
+    ExportJob(PictureDrawer& drawer, const Deformation& deformation, const View& view,
+              const FileStyle& style);
 
-    bool done() const { return next_ == tiles_[0] * tiles_[1]; }
-    double progress() const { return double(next_) / (tiles_[0] * tiles_[1]); }
+    bool done() const { return next_row_ == like_.height; }
+    double progress() const { return double(next_row_) / like_.height; }
     /// What is exported: its size, and the original's depth, colour profile and resolution; no pixels.
     const Image& like() const { return like_; }
     /// Whether any pixel may be less than opaque, as far as can be told without drawing.
     bool may_be_transparent() const { return may_be_transparent_; }
 
-    /// Renders the next tile of the whole picture, for take().
-    void step();
-    /// The exported picture. Requires done(), by step().
-    Image take();
-
-    /// Renders the next rows, for those who cannot keep them all: as wide as the picture. Requires !done(),
-    /// and no step() before.
+    /// Draws the next rows. Requires !done().
     Image next_band();
     /// Begins again at the top.
-    void restart() { next_ = 0; }
+    void restart() { next_row_ = 0; }
 
   private:
-    void draw_tile(Image& into, int first_row);
-
     PictureDrawer& drawer_;
-    ExportSettings settings_;
-    View view_;
-    Image like_, whole_;
+    Image like_;
     bool may_be_transparent_ = true;
-    TriangleBoxes boxes_;
-    std::array<int, 2> tile_{};   ///< width and height of a tile, exported pixels
-    std::array<int, 2> tiles_{};  ///< along x and y
-    int next_ = 0;
+    int band_rows_;
+    int next_row_ = 0;
 };
 
 }  // namespace probewarp

@@ -4,10 +4,10 @@
 
 namespace probewarp {
 
-std::unique_ptr<ImageEncoding> draw_picture_file(PictureDrawer& drawer, const Document& document,
-                                                 const Deformation& deformation, const PictureFile& file,
+std::unique_ptr<ImageEncoding> draw_picture_file(PictureDrawer& drawer, const Deformation& deformation,
+                                                 const View& view, const PictureFile& file,
                                                  const ExportSteps& steps) {
-    ExportJob job(drawer, document, deformation, file.settings);
+    ExportJob job(drawer, deformation, view, file_style(file.settings));
     for (bool transparent = job.may_be_transparent();; transparent = !transparent) {
         auto encoding = std::make_unique<ImageEncoding>(*file.format, job.like(), file.encode, transparent);
         while (!job.done() && encoding->fits()) {
@@ -21,12 +21,11 @@ std::unique_ptr<ImageEncoding> draw_picture_file(PictureDrawer& drawer, const Do
     }
 }
 
-std::unique_ptr<ImageEncoding> draw_picture_file(const Document& document, const Deformation& deformation,
-                                                 const PictureFile& file, const ExportSteps& steps) {
-    const View view = export_view(document, deformation, file.settings);
-    Rasterizer rasterizer(document.picture->image, wanted_levels(deformation, view));
-    rasterizer.set_mesh(mesh_of(deformation), deformation.now, deformation.moved);
-    return draw_picture_file(rasterizer, document, deformation, file, steps);
+std::unique_ptr<ImageEncoding> draw_picture_file(const Deformation& deformation, const PictureFile& file,
+                                                 const ExportSteps& steps) {
+    const View view = export_view(deformation, file.settings);
+    Rasterizer rasterizer(deformation, view, file_style(file.settings));
+    return draw_picture_file(rasterizer, deformation, view, file, steps);
 }
 
 }  // namespace probewarp

@@ -23,14 +23,14 @@ struct ExportSteps {
     std::function<void(double)> show;             ///< the part that is drawn, [0, 1]
 };
 
-/// Draws and encodes; finish() of what it returns is the file's rest. The drawer must hold the document's
-/// picture and deformed mesh. Throws Error.
-std::unique_ptr<ImageEncoding> draw_picture_file(PictureDrawer& drawer, const Document& document,
-                                                 const Deformation& deformation, const PictureFile& file,
+/// Draws and encodes; finish() of what it returns is the file's rest. drawer: of the deformation, in this
+/// view and in the file's style. Throws Error.
+std::unique_ptr<ImageEncoding> draw_picture_file(PictureDrawer& drawer, const Deformation& deformation,
+                                                 const View& view, const PictureFile& file,
                                                  const ExportSteps& steps);
 
-/// Likewise by the processor, without the drawer's overlay.
-std::unique_ptr<ImageEncoding> draw_picture_file(const Document& document, const Deformation& deformation,
-                                                 const PictureFile& file, const ExportSteps& steps);
+/// Likewise by the processor, which has no overlay.
+std::unique_ptr<ImageEncoding> draw_picture_file(const Deformation& deformation, const PictureFile& file,
+                                                 const ExportSteps& steps);
 
 }  // namespace probewarp

@@ -1,8 +1,6 @@
-// What a deformed picture is drawn for a file by: the graphics driver (Renderer) or the processor itself
-// (Rasterizer), to the same values but for rounding.
+// What draws a deformed picture for a file: the processor (Rasterizer), or a graphics driver.
 #pragma once
 
-#include <cstddef>
 #include <glm/vec2.hpp>
 #include <optional>
 
@@ -17,32 +15,25 @@ struct View {
     glm::dvec2 scale{1};   ///< target pixels per image pixel, > 0
     int width = 0;         ///< of the target, pixels
     int height = 0;
-    int first_column = 0;  ///< of the target: what is left of it stays as it was
 };
 
 /// How a picture for a file is drawn.
 struct FileStyle {
     int samples = 1;                   ///< samples x samples a target pixel
     std::optional<Colour> background;  ///< empty: as transparent as it is
-    bool overlay = false;
+    bool overlay = false;              ///< with what lies over the picture; only drivers draw that
 };
 
-/// Some of the mesh's triangles, one after the other.
-struct TriangleRun {
-    std::size_t first = 0, count = 0;
-};
-
-/// Holds a picture and its deformed mesh.
+/// Draws one view of one deformed picture.
 class PictureDrawer {
   public:
     virtual ~PictureDrawer() = default;
     /// Whether the picture is, everywhere.
     virtual bool is_opaque() const = 0;
 
-    /// Draws the view at (left, top) of `image`, whose depth it takes. triangles: at least those that show in
-    /// the view; of no meaning where the mesh has not moved
-    virtual void render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                        TriangleRun triangles) = 0;
+    /// Draws the view's rows from `first_row` on, as many as the band has. band: as wide as the view and as
+    /// deep as the picture
+    virtual void draw_rows(int first_row, Image& band) = 0;
 };
 
 }  // namespace probewarp

@@ -2,14 +2,16 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <limits>
 #include <type_traits>
 
 #include "raster/mipmaps.h"
-#include "raster/row_drawing.h"
+#include "raster/scan_conversion.h"
 
 namespace probewarp {
 
@@ -38,14 +40,11 @@ Image thickened(const Image& image) {
     return thick;
 }
 
-std::vector<Level> levels_of(const Image& picture, std::span<const Image> smaller) {
-    std::vector<Level> levels;
-    const auto add = [&](const Image& image) {
-        levels.push_back({pixel_bytes(image).data(), image.width, image.height});
-    };
-    add(picture);
-    for (const Image& image : smaller) add(image);
-    return levels;
+View of_samples(View view, int samples) {
+    view.scale *= double(samples);
+    view.width *= samples;
+    view.height *= samples;
+    return view;
 }
 
 /// What is drawn beside the picture.
@@ -57,110 +56,102 @@ Pixel<Sample> filling(std::optional<Colour> background) {
             std::numeric_limits<Sample>::max()};
 }
 
-/// Where a drawing goes.
-template <class Sample>
-struct Canvas {
-    Pixel<Sample>* pixels;   ///< the view's first
-    std::size_t row_pixels;  ///< from row to row
-
-    std::span<Pixel<Sample>> row(int row, int width) const {
-        return {pixels + std::size_t(row) * row_pixels, std::size_t(width)};
-    }
-};
-
-/// What is drawn, and how.
-struct Drawing {
-    DeformedMesh mesh;
-    TriangleRun triangles;
-    std::vector<Level> levels;
-    View view;
-    FileStyle style;
-};
-
-/// Rows of an opaque picture at one sample a pixel, which leaves nothing to blend.
-template <class Sample>
-void draw_rows(const Drawing& d, const Rows& rows, const Canvas<Sample>& canvas) {
-    const auto spans = scan_convert(d.mesh, d.triangles, d.view, rows, int(d.levels.size()) - 1);
-    const Pixel<Sample> nothing = filling<Sample>(d.style.background);
-    RowLookups room(std::size_t(d.view.width));
-    for (int row = rows.first; row < rows.end; ++row)
-        draw_row(d.levels, spans[std::size_t(row - rows.first)], room, nothing,
-                 canvas.row(row, d.view.width));
+/// Adds up each pixel's weighted colours, of which so many lie side by side.
+void add_samples(const LayerRow& layer, std::size_t samples, LayerRow& sum) {
+    for (const auto channel : {&LayerRow::r, &LayerRow::g, &LayerRow::b, &LayerRow::a})
+        for (std::size_t i = 0; i < sum.width(); ++i)
+            for (std::size_t k = 0; k < samples; ++k) (sum.*channel)[i] += (layer.*channel)[i * samples + k];
 }
 
-/// Adds up each pixel's `samples` weighted colours, which lie side by side.
-void add_samples(const std::vector<float>& layer, int samples, std::vector<float>& sum) {
-    const std::size_t each = std::size_t(samples);
-    for (std::size_t i = 0; i + beyond_row < sum.size(); ++i)
-        for (std::size_t k = 0; k < each; ++k) sum[i] += layer[i * each + k];
-}
-
-/// Rows of any picture at any number of samples.
-template <class Sample>
-void blend_rows(const Drawing& d, const Rows& rows, const Canvas<Sample>& canvas) {
-    const int samples = d.style.samples;
-    View fine = d.view;  // of the samples
-    fine.scale *= double(samples);
-    fine.width *= samples;
-    const auto spans = scan_convert(d.mesh, d.triangles, fine, {rows.first * samples, rows.end * samples},
-                                    int(d.levels.size()) - 1);
-    const Pixel<Sample> background = filling<Sample>(d.style.background);
-    auto of_row = spans.begin();
-    for (int row = rows.first; row < rows.end; ++row) {
-        LayerRow sum(std::size_t(d.view.width));
-        for (int i = 0; i < samples; ++i, ++of_row) {
-            LayerRow layer(std::size_t(fine.width));
-            blend_row<Sample>(d.levels, *of_row, layer);
-            for (const auto channel : {&LayerRow::r, &LayerRow::g, &LayerRow::b, &LayerRow::a})
-                add_samples(layer.*channel, samples, sum.*channel);
-        }
-        resolve_row(sum, samples * samples, d.style.background ? &background : nullptr,
-                    canvas.row(row, d.view.width));
-    }
-}
-
-/// Rows that one thread draws at a time: of triangles that lie in several such, each works out the corners.
-constexpr int rows_at_once = 32;
+/// Rows of samples in a bin: few, so that a thread's spans stay in its caches, but several, since a triangle
+/// is worked out in each bin that it touches.
+constexpr int bin_sample_rows = 32;
 
 }  // namespace
 
-Rasterizer::Rasterizer(const Image& picture, int most_levels)
-    : picture_(&picture), opaque_(!has_alpha(picture)), smaller_(smaller_levels(picture, most_levels)) {
-    if (is_thin(picture)) picture_ = &thick_.emplace(thickened(picture));
-    for (Image& image : smaller_)
+Rasterizer::Rasterizer(const Deformation& deformation, const View& view, const FileStyle& style)
+    : samples_view_(of_samples(view, style.samples)),
+      style_(style),
+      bin_rows_(std::max(1, bin_sample_rows / style.samples)) {
+    assert(!style.overlay);
+    const Image& picture = deformation.source.picture->image;
+    opaque_ = !has_alpha(picture);
+    if (deformation.moved) {
+        mesh_ = {mesh_of(deformation).rest, deformation.now, mesh_of(deformation).triangles};
+    } else {  // all of the picture as it is, with the cells that the mesh leaves out
+        static constexpr std::array<std::uint32_t, 6> two_triangles{0, 1, 2, 2, 1, 3};
+        const float right = float(picture.width), bottom = float(picture.height);
+        corners_ = {{{0, 0}, {right, 0}, {0, bottom}, {right, bottom}}};
+        mesh_ = {corners_, corners_, two_triangles};
+    }
+    images_ = smaller_levels(picture, wanted_levels(mesh_, samples_view_));
+    for (Image& image : images_)
         if (is_thin(image)) image = thickened(image);
-    const float right = float(picture.width), bottom = float(picture.height);
-    corners_ = {{{0, 0}, {right, 0}, {0, bottom}, {right, bottom}}};
-}
-
-void Rasterizer::set_mesh(const Mesh& mesh, std::span<const glm::vec2> now, bool moved) {
-    static constexpr std::array<std::uint32_t, 6> two_triangles{0, 1, 2, 2, 1, 3};
-    moved_ = moved;
-    mesh_ = moved ? DeformedMesh{mesh.rest, now, mesh.triangles}
-                  : DeformedMesh{corners_, corners_, two_triangles};
-}
-
-void Rasterizer::render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                        TriangleRun triangles) {
-    assert(!style.overlay && image.bits() == picture_->bits());
-    assert(left >= 0 && top >= 0 && left + view.width <= image.width && top + view.height <= image.height);
-    if (!moved_) triangles = {0, 2};
-    const Drawing drawing{mesh_, triangles, levels_of(*picture_, smaller_), view, style};
-    const auto draw = [&]<class Sample>(std::vector<Sample>& rgba) {
-        const std::size_t row_pixels = std::size_t(image.width);
-        const Canvas<Sample> canvas{
-            reinterpret_cast<Pixel<Sample>*>(rgba.data()) + std::size_t(top) * row_pixels + std::size_t(left),
-            row_pixels};
-        const auto draw_some = opaque_ && style.samples == 1 ? draw_rows<Sample> : blend_rows<Sample>;
-        using Range = oneapi::tbb::blocked_range<int>;
-        oneapi::tbb::parallel_for(
-            Range(0, view.height, rows_at_once),
-            [&](const Range& range) {
-                draw_some(drawing, {range.begin(), range.end()}, canvas);
-            },
-            oneapi::tbb::simple_partitioner());
+    if (is_thin(picture)) images_.insert(images_.begin(), thickened(picture));
+    const auto add_level = [&](const Image& image) {
+        levels_.push_back({pixel_bytes(image).data(), image.width, image.height});
     };
-    std::visit(draw, image.rgba);
+    if (!is_thin(picture)) add_level(picture);
+    for (const Image& image : images_) add_level(image);
+    bins_ = bin_triangles(mesh_, samples_view_, bin_rows_ * style.samples);
+}
+
+/// At one sample a pixel nothing has to be blended. rows: of one bin; pixels: #rows x width
+template <class Sample>
+void Rasterizer::draw_opaque(const Rows& rows, std::span<Pixel<Sample>> pixels) const {
+    const std::size_t width = std::size_t(samples_view_.width);
+    const Pixel<Sample> beside = filling<Sample>(style_.background);
+    RowLookups room(width);
+    for (const auto& spans : scan_convert(mesh_, bins_.bin(std::size_t(rows.first / bin_rows_)),
+                                          samples_view_, rows, int(levels_.size()) - 1)) {
+        draw_row(levels_, spans, room, beside, pixels.first(width));
+        pixels = pixels.subspan(width);
+    }
+}
+
+/// Any picture at any number of samples. As draw_opaque
+template <class Sample>
+void Rasterizer::blend(const Rows& rows, std::span<Pixel<Sample>> pixels) const {
+    const std::size_t samples = std::size_t(style_.samples), width = std::size_t(samples_view_.width);
+    const Pixel<Sample> background = filling<Sample>(style_.background);
+    RowLookups room(width);
+    LayerRow sum(width / samples);
+    std::size_t sample_row = 0;
+    for (const auto& spans :
+         scan_convert(mesh_, bins_.bin(std::size_t(rows.first / bin_rows_)), samples_view_,
+                      {rows.first * style_.samples, rows.end * style_.samples}, int(levels_.size()) - 1)) {
+        LayerRow layer(width);
+        if (opaque_)
+            layer_row<Sample>(levels_, spans, room, layer);
+        else
+            blend_row<Sample>(levels_, spans, layer);
+        add_samples(layer, samples, sum);
+        if (++sample_row % samples > 0) continue;
+        resolve_row(sum, style_.samples * style_.samples, style_.background ? &background : nullptr,
+                    pixels.first(sum.width()));
+        pixels = pixels.subspan(sum.width());
+        sum = LayerRow(sum.width());
+    }
+}
+
+void Rasterizer::draw_rows(int first_row, Image& band) {
+    assert(band.width * style_.samples == samples_view_.width);
+    const auto draw = [&]<class Sample>(std::vector<Sample>& rgba) {
+        const std::span pixels(reinterpret_cast<Pixel<Sample>*>(rgba.data()), rgba.size() / 4);
+        const std::size_t width = std::size_t(band.width);
+        const int first_bin = first_row / bin_rows_, end_row = first_row + band.height;
+        oneapi::tbb::parallel_for(first_bin, (end_row - 1) / bin_rows_ + 1, [&](int bin) {
+            const Rows rows{std::max(first_row, bin * bin_rows_), std::min(end_row, (bin + 1) * bin_rows_)};
+            const auto to = pixels.subspan(std::size_t(rows.first - first_row) * width,
+                                           std::size_t(rows.end - rows.first) * width);
+            if (opaque_ && style_.samples == 1)
+                draw_opaque<Sample>(rows, to);
+            else
+                blend<Sample>(rows, to);
+        });
+    };
+    // Whoever waits for the last of them must not begin with another picture meanwhile.
+    oneapi::tbb::this_task_arena::isolate([&] { std::visit(draw, band.rgba); });
 }
 
 }  // namespace probewarp

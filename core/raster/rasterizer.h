@@ -3,40 +3,42 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
-#include "model/mesh.h"
+#include "model/deformation.h"
+#include "raster/row_drawing.h"
 #include "raster/triangles.h"
 
 namespace probewarp {
 
-/// The values are those of shaders/mesh.frag but for rounding.
+/// The values are those of shaders/mesh.frag and shaders/resolve.frag but for rounding.
 class Rasterizer final : public PictureDrawer {
   public:
-    /// picture: must outlive it. most_levels: that many mipmaps are made at most
-    Rasterizer(const Image& picture, int most_levels);
-
-    /// mesh, now (#vertices, image pixels): must outlive it. Where the mesh has not `moved`, all of the
-    /// picture is drawn as it is.
-    void set_mesh(const Mesh& mesh, std::span<const glm::vec2> now, bool moved);
-
-    bool is_opaque() const override { return opaque_; }
-
-    /// Without an overlay. Shared between all cores.
-    void render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                TriangleRun triangles) override;
-
-  private:
+    /// deformation: with its document's picture must outlive it. style: without an overlay
+    Rasterizer(const Deformation& deformation, const View& view, const FileStyle& style);
     Rasterizer(const Rasterizer&) = delete;
     Rasterizer& operator=(const Rasterizer&) = delete;
 
-    const Image* picture_;
+    bool is_opaque() const override { return opaque_; }
+    /// Shared between all cores.
+    void draw_rows(int first_row, Image& band) override;
+
+  private:
+    template <class Sample>
+    void draw_opaque(const Rows& rows, std::span<Pixel<Sample>> pixels) const;
+    template <class Sample>
+    void blend(const Rows& rows, std::span<Pixel<Sample>> pixels) const;
+
+    View samples_view_;  ///< of the samples
+    FileStyle style_;
     bool opaque_;
-    std::optional<Image> thick_;  ///< the picture, where it is one pixel wide or high
-    std::vector<Image> smaller_;
     std::array<glm::vec2, 4> corners_;  ///< of the picture
     DeformedMesh mesh_;
-    bool moved_ = false;
+    std::vector<Image> images_;  ///< the mipmaps, and the picture where it is one pixel wide or high
+    std::vector<Level> levels_;
+    int bin_rows_;  ///< what one thread draws at a time: rows
+    TriangleBins bins_;
 };
 
 }  // namespace probewarp

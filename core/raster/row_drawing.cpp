@@ -1,7 +1,9 @@
 #include "raster/row_drawing.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #ifndef PROBEWARP_ROW_DRAWING_ONCE
 #define PROBEWARP_ROW_DRAWING_ONCE
@@ -11,7 +13,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "pixels are taken apart as little-endian words");
 
 /// How many rows of the picture ahead it is fetched from memory: the next rows of the target want it.
-constexpr std::ptrdiff_t rows_ahead = 4;
+constexpr int rows_ahead = 4;
 
 /// As in shaders/mesh.frag.
 constexpr float least_weight = 0x1p-40f;
@@ -148,7 +150,8 @@ HWY_INLINE Colours Bilinear(const Level& level, Vector x, Vector y) {
     const Place across = PlaceOf(x, level.width), down = PlaceOf(y, level.height);
     const Ints width = hn::Set(IntTag(), level.width);
     const Ints above = hn::Add(hn::Mul(down.pixel, width), across.pixel), below = hn::Add(above, width);
-    hwy::Prefetch(samples + 4 * (hn::GetLane(above) + rows_ahead * std::ptrdiff_t(level.width)));
+    const int ahead = std::min(hn::GetLane(down.pixel) + rows_ahead, level.height - 1);
+    hwy::Prefetch(samples + 4 * (std::ptrdiff_t(ahead) * level.width + hn::GetLane(across.pixel)));
     return Mix(Across<kind>(samples, above, across.part), Across<kind>(samples, below, across.part),
                down.part);
 }
@@ -190,77 +193,103 @@ HWY_INLINE void Store(const Colours& c, std::size_t count, std::uint16_t* to) {
     std::copy_n(pairs, 2 * count, reinterpret_cast<std::uint32_t*>(to));
 }
 
-/// Notes what a span's pixels show.
-void Note(const Span& span, RowLookups& row) {
+/// Calls each(i, inside, x, y) for every vector of a span's pixels, the first of them `i`: the places that
+/// they show in the picture at rest, of use where `inside`.
+template <class Each>
+HWY_INLINE void ForPlaces(const PixelSpan& span, const Each& each) {
     const Tag tag;
     const std::size_t lanes = hn::Lanes(tag), end = std::size_t(span.end);
-    const Vector lane = hn::Iota(tag, 0), level = hn::Set(tag, span.level);
+    const Vector lane = hn::Iota(tag, 0);
     const Vector across_x = hn::Set(tag, float(span.across.x)), across_y = hn::Set(tag, float(span.across.y));
     glm::dvec2 at = span.at;
-    for (std::size_t i = std::size_t(span.first); i < end; i += lanes, at += span.across * double(lanes)) {
-        const auto inside = hn::FirstN(tag, end - i);
-        hn::BlendedStore(hn::MulAdd(lane, across_x, hn::Set(tag, float(at.x))), inside, tag, &row.x[i]);
-        hn::BlendedStore(hn::MulAdd(lane, across_y, hn::Set(tag, float(at.y))), inside, tag, &row.y[i]);
-        hn::BlendedStore(level, inside, tag, &row.level[i]);
-    }
+    for (std::size_t i = std::size_t(span.first); i < end; i += lanes, at += span.across * double(lanes))
+        each(i, hn::FirstN(tag, end - i), hn::MulAdd(lane, across_x, hn::Set(tag, float(at.x))),
+             hn::MulAdd(lane, across_y, hn::Set(tag, float(at.y))));
 }
 
-/// Draws a row, as many pixels at a time as are of one mipmap. pixels: #width
-template <class Sample>
-void DrawPixels(std::span<const Level> levels, const RowLookups& row, const Pixel<Sample>& nothing,
-                std::span<Pixel<Sample>> pixels) {
+/// Notes what the pixels of a row show.
+HWY_INLINE void Note(std::span<const PixelSpan> spans, std::size_t width, RowLookups& row) {
     const Tag tag;
-    for (std::size_t i = 0, count; i < pixels.size(); i += count) {
+    std::fill_n(row.level.begin(), width, RowLookups::nothing_there);
+    for (const PixelSpan& span : spans)
+        ForPlaces(span, [&](std::size_t i, auto inside, Vector x, Vector y) {
+            hn::BlendedStore(x, inside, tag, &row.x[i]);
+            hn::BlendedStore(y, inside, tag, &row.y[i]);
+            hn::BlendedStore(hn::Set(tag, span.level), inside, tag, &row.level[i]);
+        });
+}
+
+/// Looks a noted row up, as many pixels at a time as are of one mipmap: calls show(i, count, colours) for
+/// `count` pixels from `i` on, or leave_out(i, count) where nothing is.
+template <class Sample, class Show, class LeaveOut>
+HWY_INLINE void ForPixels(std::span<const Level> levels, const RowLookups& row, std::size_t width,
+                          const Show& show, const LeaveOut& leave_out) {
+    const Tag tag;
+    for (std::size_t i = 0, count; i < width; i += count) {
         const Vector level = hn::LoadU(tag, &row.level[i]), fine = hn::Floor(level);
         const float first = hn::GetLane(fine);
         const std::ptrdiff_t alike = hn::FindFirstTrue(tag, hn::Ne(fine, hn::Set(tag, first)));
-        count = std::min(alike < 0 ? hn::Lanes(tag) : std::size_t(alike), pixels.size() - i);
-        if (first < 0) {
-            std::fill_n(&pixels[i], count, nothing);
-            continue;
-        }
-        Colours colours =
-            Trilinear<Kind::opaque, Sample>(levels, std::size_t(first), hn::Sub(level, fine),
-                                            hn::LoadU(tag, &row.x[i]), hn::LoadU(tag, &row.y[i]));
-        colours.a = hn::Set(tag, float(std::numeric_limits<Sample>::max()));
-        Store(colours, count, pixels[i].data());
+        count = std::min(alike < 0 ? hn::Lanes(tag) : std::size_t(alike), width - i);
+        if (first < 0)
+            leave_out(i, count);
+        else
+            show(i, count,
+                 Trilinear<Kind::opaque, Sample>(levels, std::size_t(first), hn::Sub(level, fine),
+                                                 hn::LoadU(tag, &row.x[i]), hn::LoadU(tag, &row.y[i])));
     }
 }
 
 template <class Sample>
-void Draw(std::span<const Level> levels, std::span<const Span> spans, RowLookups& row,
-          const Pixel<Sample>& nothing, std::span<Pixel<Sample>> pixels) {
-    std::fill_n(row.level.begin(), pixels.size(), RowLookups::nothing_there);
-    for (const Span& span : spans) Note(span, row);
-    DrawPixels(levels, row, nothing, pixels);
+void Draw(std::span<const Level> levels, std::span<const PixelSpan> spans, RowLookups& row,
+          const Pixel<Sample>& beside, std::span<Pixel<Sample>> pixels) {
+    const Vector opaque = hn::Set(Tag(), float(std::numeric_limits<Sample>::max()));
+    Note(spans, pixels.size(), row);
+    ForPixels<Sample>(
+        levels, row, pixels.size(),
+        [&](std::size_t i, std::size_t count, const Colours& c) {
+            Store({c.r, c.g, c.b, opaque}, count, pixels[i].data());
+        },
+        [&](std::size_t i, std::size_t count) { std::fill_n(&pixels[i], count, beside); });
 }
 
-/// Lays a span's pixels over what is there.
 template <class Sample>
-void Blend(std::span<const Level> levels, const Span& span, LayerRow& layer) {
+void Layer(std::span<const Level> levels, std::span<const PixelSpan> spans, RowLookups& row,
+           LayerRow& layer) {
     const Tag tag;
-    const std::size_t lanes = hn::Lanes(tag), end = std::size_t(span.end);
-    const Vector lane = hn::Iota(tag, 0), one = hn::Set(tag, 1.0f);
-    const Vector across_x = hn::Set(tag, float(span.across.x)), across_y = hn::Set(tag, float(span.across.y));
-    const float fine = std::floor(span.level);
-    const Vector part = hn::Set(tag, span.level - fine);
-    glm::dvec2 at = span.at;
-    for (std::size_t i = std::size_t(span.first); i < end; i += lanes, at += span.across * double(lanes)) {
-        const Colours over = Trilinear<Kind::weighted, Sample>(
-            levels, std::size_t(fine), part, hn::MulAdd(lane, across_x, hn::Set(tag, float(at.x))),
-            hn::MulAdd(lane, across_y, hn::Set(tag, float(at.y))));
-        const Vector through = hn::Sub(one, over.a);
-        const auto inside = hn::FirstN(tag, end - i);
-        const auto lay = [&](Vector top, std::vector<float>& on) {
-            hn::BlendedStore(hn::MulAdd(through, hn::LoadU(tag, &on[i]), top), inside, tag, &on[i]);
-        };
-        lay(over.r, layer.r), lay(over.g, layer.g), lay(over.b, layer.b), lay(over.a, layer.a);
-    }
+    const Vector zero = hn::Zero(tag);
+    const auto put = [&](std::size_t i, std::size_t count, const Colours& c) {
+        const auto inside = hn::FirstN(tag, count);
+        hn::BlendedStore(c.r, inside, tag, &layer.r[i]);
+        hn::BlendedStore(c.g, inside, tag, &layer.g[i]);
+        hn::BlendedStore(c.b, inside, tag, &layer.b[i]);
+        hn::BlendedStore(c.a, inside, tag, &layer.a[i]);
+    };
+    Note(spans, layer.width(), row);
+    ForPixels<Sample>(
+        levels, row, layer.width(),
+        [&](std::size_t i, std::size_t count, const Colours& c) {
+            put(i, count, {c.r, c.g, c.b, hn::Set(tag, 1.0f)});
+        },
+        [&](std::size_t i, std::size_t count) {
+            put(i, count, {zero, zero, zero, zero});
+        });
 }
 
 template <class Sample>
-void BlendAll(std::span<const Level> levels, std::span<const Span> spans, LayerRow& layer) {
-    for (const Span& span : spans) Blend<Sample>(levels, span, layer);
+void Blend(std::span<const Level> levels, std::span<const PixelSpan> spans, LayerRow& layer) {
+    const Tag tag;
+    for (const PixelSpan& span : spans) {
+        const float fine = std::floor(span.level);
+        const Vector part = hn::Set(tag, span.level - fine);
+        ForPlaces(span, [&](std::size_t i, auto inside, Vector x, Vector y) {
+            const Colours over = Trilinear<Kind::weighted, Sample>(levels, std::size_t(fine), part, x, y);
+            const Vector through = hn::Sub(hn::Set(tag, 1.0f), over.a);
+            const auto lay = [&](Vector top, std::vector<float>& on) {
+                hn::BlendedStore(hn::MulAdd(through, hn::LoadU(tag, &on[i]), top), inside, tag, &on[i]);
+            };
+            lay(over.r, layer.r), lay(over.g, layer.g), lay(over.b, layer.b), lay(over.a, layer.a);
+        });
+    }
 }
 
 /// Straight colours, of weighted ones that were added up `samples` times. background: likewise straight, or
@@ -286,23 +315,31 @@ void Resolve(const LayerRow& sum, int samples, const Pixel<Sample>* background,
     }
 }
 
-void DrawRow8(std::span<const Level> levels, std::span<const Span> spans, RowLookups& row,
-              const Pixel<std::uint8_t>& nothing, std::span<Pixel<std::uint8_t>> pixels) {
-    Draw(levels, spans, row, nothing, pixels);
+void DrawRow8(std::span<const Level> levels, std::span<const PixelSpan> spans, RowLookups& row,
+              const Pixel<std::uint8_t>& beside, std::span<Pixel<std::uint8_t>> pixels) {
+    Draw(levels, spans, row, beside, pixels);
 }
-void BlendRow8(std::span<const Level> levels, std::span<const Span> spans, LayerRow& layer) {
-    BlendAll<std::uint8_t>(levels, spans, layer);
+void LayerRow8(std::span<const Level> levels, std::span<const PixelSpan> spans, RowLookups& row,
+               LayerRow& layer) {
+    Layer<std::uint8_t>(levels, spans, row, layer);
+}
+void BlendRow8(std::span<const Level> levels, std::span<const PixelSpan> spans, LayerRow& layer) {
+    Blend<std::uint8_t>(levels, spans, layer);
 }
 void ResolveRow8(const LayerRow& sum, int samples, const Pixel<std::uint8_t>* background,
                  std::span<Pixel<std::uint8_t>> pixels) {
     Resolve(sum, samples, background, pixels);
 }
-void DrawRow16(std::span<const Level> levels, std::span<const Span> spans, RowLookups& row,
-               const Pixel<std::uint16_t>& nothing, std::span<Pixel<std::uint16_t>> pixels) {
-    Draw(levels, spans, row, nothing, pixels);
+void DrawRow16(std::span<const Level> levels, std::span<const PixelSpan> spans, RowLookups& row,
+               const Pixel<std::uint16_t>& beside, std::span<Pixel<std::uint16_t>> pixels) {
+    Draw(levels, spans, row, beside, pixels);
 }
-void BlendRow16(std::span<const Level> levels, std::span<const Span> spans, LayerRow& layer) {
-    BlendAll<std::uint16_t>(levels, spans, layer);
+void LayerRow16(std::span<const Level> levels, std::span<const PixelSpan> spans, RowLookups& row,
+                LayerRow& layer) {
+    Layer<std::uint16_t>(levels, spans, row, layer);
+}
+void BlendRow16(std::span<const Level> levels, std::span<const PixelSpan> spans, LayerRow& layer) {
+    Blend<std::uint16_t>(levels, spans, layer);
 }
 void ResolveRow16(const LayerRow& sum, int samples, const Pixel<std::uint16_t>* background,
                   std::span<Pixel<std::uint16_t>> pixels) {
@@ -318,36 +355,49 @@ HWY_AFTER_NAMESPACE();
 namespace probewarp {
 
 HWY_EXPORT(DrawRow8);
-HWY_EXPORT(DrawRow16);
+HWY_EXPORT(LayerRow8);
 HWY_EXPORT(BlendRow8);
-HWY_EXPORT(BlendRow16);
 HWY_EXPORT(ResolveRow8);
+HWY_EXPORT(DrawRow16);
+HWY_EXPORT(LayerRow16);
+HWY_EXPORT(BlendRow16);
 HWY_EXPORT(ResolveRow16);
 
 template <>
-void draw_row(std::span<const Level> levels, std::span<const Span> spans, RowLookups& room,
-              const Pixel<std::uint8_t>& nothing, std::span<Pixel<std::uint8_t>> pixels) {
-    HWY_DYNAMIC_DISPATCH(DrawRow8)(levels, spans, room, nothing, pixels);
+void draw_row(std::span<const Level> levels, std::span<const PixelSpan> spans, RowLookups& room,
+              const Pixel<std::uint8_t>& beside, std::span<Pixel<std::uint8_t>> pixels) {
+    HWY_DYNAMIC_DISPATCH(DrawRow8)(levels, spans, room, beside, pixels);
 }
 template <>
-void draw_row(std::span<const Level> levels, std::span<const Span> spans, RowLookups& room,
-              const Pixel<std::uint16_t>& nothing, std::span<Pixel<std::uint16_t>> pixels) {
-    HWY_DYNAMIC_DISPATCH(DrawRow16)(levels, spans, room, nothing, pixels);
+void layer_row<std::uint8_t>(std::span<const Level> levels, std::span<const PixelSpan> spans,
+                             RowLookups& room, LayerRow& layer) {
+    HWY_DYNAMIC_DISPATCH(LayerRow8)(levels, spans, room, layer);
 }
-
 template <>
-void blend_row<std::uint8_t>(std::span<const Level> levels, std::span<const Span> spans, LayerRow& layer) {
+void blend_row<std::uint8_t>(std::span<const Level> levels, std::span<const PixelSpan> spans,
+                             LayerRow& layer) {
     HWY_DYNAMIC_DISPATCH(BlendRow8)(levels, spans, layer);
 }
-template <>
-void blend_row<std::uint16_t>(std::span<const Level> levels, std::span<const Span> spans, LayerRow& layer) {
-    HWY_DYNAMIC_DISPATCH(BlendRow16)(levels, spans, layer);
-}
-
 template <>
 void resolve_row(const LayerRow& sum, int samples, const Pixel<std::uint8_t>* background,
                  std::span<Pixel<std::uint8_t>> pixels) {
     HWY_DYNAMIC_DISPATCH(ResolveRow8)(sum, samples, background, pixels);
+}
+
+template <>
+void draw_row(std::span<const Level> levels, std::span<const PixelSpan> spans, RowLookups& room,
+              const Pixel<std::uint16_t>& beside, std::span<Pixel<std::uint16_t>> pixels) {
+    HWY_DYNAMIC_DISPATCH(DrawRow16)(levels, spans, room, beside, pixels);
+}
+template <>
+void layer_row<std::uint16_t>(std::span<const Level> levels, std::span<const PixelSpan> spans,
+                              RowLookups& room, LayerRow& layer) {
+    HWY_DYNAMIC_DISPATCH(LayerRow16)(levels, spans, room, layer);
+}
+template <>
+void blend_row<std::uint16_t>(std::span<const Level> levels, std::span<const PixelSpan> spans,
+                              LayerRow& layer) {
+    HWY_DYNAMIC_DISPATCH(BlendRow16)(levels, spans, layer);
 }
 template <>
 void resolve_row(const LayerRow& sum, int samples, const Pixel<std::uint16_t>* background,

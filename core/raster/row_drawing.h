@@ -36,21 +36,27 @@ struct RowLookups {
     explicit RowLookups(std::size_t width) : x(width + beyond_row), y(x.size()), level(x.size()) {}
 };
 
-/// Draws an opaque picture. pixels: #width, each of which is written; nothing: where no span is
+/// Draws an opaque picture. pixels: #width, each of which is written; beside: what is where no span is
 template <class Sample>
-void draw_row(std::span<const Level> levels, std::span<const Span> spans, RowLookups& room,
-              const Pixel<Sample>& nothing, std::span<Pixel<Sample>> pixels);
+void draw_row(std::span<const Level> levels, std::span<const PixelSpan> spans, RowLookups& room,
+              const Pixel<Sample>& beside, std::span<Pixel<Sample>> pixels);
 
 /// Weighted colours: colour times weight, in the samples' steps, and weight.
 struct LayerRow {
     std::vector<float> r, g, b, a;
 
     explicit LayerRow(std::size_t width) : r(width + beyond_row), g(r.size()), b(r.size()), a(r.size()) {}
+    std::size_t width() const { return r.size() - beyond_row; }
 };
 
-/// Lays one span after the other over what is in the layer.
+/// Draws an opaque picture into a layer, all of which is written; nothing is where no span is.
 template <class Sample>
-void blend_row(std::span<const Level> levels, std::span<const Span> spans, LayerRow& layer);
+void layer_row(std::span<const Level> levels, std::span<const PixelSpan> spans, RowLookups& room,
+               LayerRow& layer);
+
+/// Lays one span after the other over what is in the layer, whatever the picture.
+template <class Sample>
+void blend_row(std::span<const Level> levels, std::span<const PixelSpan> spans, LayerRow& layer);
 
 /// Straight pixels of weighted ones, of which `samples` were added up for each. background: what they lie on,
 /// or null, where they stay as transparent as they are; pixels: #width

@@ -53,26 +53,20 @@ void cover_rows(std::array<dvec2, 3> corners, const Rows& rows, int width, const
     }
 }
 
-/// As shaders/mesh.frag chooses it.
-float level_of(double pixels, int last_level) {
-    return pixels < 1.02 ? 0.0f : float(std::min(std::log2(pixels), double(last_level)));
-}
-
 }  // namespace
 
-std::vector<std::vector<Span>> scan_convert(const DeformedMesh& mesh, TriangleRun triangles, const View& view,
-                                            const Rows& rows, int last_level) {
-    std::vector<std::vector<Span>> spans(std::size_t(rows.end - rows.first));
-    for (std::size_t i = triangles.first; i < triangles.first + triangles.count; ++i) {
-        const Corners corners = corners_of(mesh, i);
+std::vector<std::vector<PixelSpan>> scan_convert(const DeformedMesh& mesh,
+                                                 std::span<const std::uint32_t> triangles, const View& view,
+                                                 const Rows& rows, int last_level) {
+    std::vector<std::vector<PixelSpan>> spans(std::size_t(rows.end - rows.first));
+    for (const std::uint32_t triangle : triangles) {
+        const Corners corners = corners_of(mesh, triangle);
+        const Lookup lookup = lookup_of(corners, view);
+        const double footprint = footprint_squared(lookup);
+        if (!std::isfinite(footprint)) continue;  // no area
+        const float level = std::min(mipmap_level(footprint), float(last_level));
         std::array<dvec2, 3> on_grid;
         for (std::size_t k = 0; k < 3; ++k) on_grid[k] = snapped((corners.now[k] - view.origin) * view.scale);
-        const auto [least, most] = std::minmax({on_grid[0].y, on_grid[1].y, on_grid[2].y});
-        if (least >= rows.end || most <= rows.first) continue;
-        const Lookup lookup = lookup_of(corners, view);
-        const double pixels = footprint(lookup);
-        if (!std::isfinite(pixels)) continue;  // no area
-        const float level = level_of(pixels, last_level);
         cover_rows(on_grid, rows, view.width, [&](int row, int first, int end) {
             const dvec2 at = lookup.at + lookup.across * (first + 0.5) + lookup.down * (row + 0.5);
             spans[std::size_t(row - rows.first)].push_back({first, end, at, lookup.across, level});

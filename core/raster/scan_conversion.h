@@ -8,23 +8,24 @@
 
 namespace probewarp {
 
-/// Whole rows of a view.
+/// Whole rows of a view, from `first` to before `end`.
 struct Rows {
     int first = 0, end = 0;
 };
 
-/// Pixels of one row that a triangle covers.
-struct Span {
+/// Pixels of one row that a triangle covers, from `first` to before `end`.
+struct PixelSpan {
     int first, end;
     glm::dvec2 at;      ///< what the first one's centre shows: pixels of the picture at rest
     glm::dvec2 across;  ///< and how far each next one goes on there
-    float level;        ///< of the mipmaps, 0 being the picture: shaders/mesh.frag
+    float level;        ///< of the mipmaps: mipmap_level, at most the last
 };
 
-/// #rows, each with its spans in the order of their triangles. A pixel is in a triangle where its centre is;
-/// of triangles with a common side one has a pixel on it, never both and never none. last_level: the smallest
-/// mipmap
-std::vector<std::vector<Span>> scan_convert(const DeformedMesh& mesh, TriangleRun triangles, const View& view,
-                                            const Rows& rows, int last_level);
+/// #rows, each with its spans in the order of the triangles. A pixel is in a triangle where its centre is; of
+/// triangles with a common side one has a pixel on it, never both and never none. triangles: indices;
+/// last_level: the smallest mipmap there is
+std::vector<std::vector<PixelSpan>> scan_convert(const DeformedMesh& mesh,
+                                                 std::span<const std::uint32_t> triangles, const View& view,
+                                                 const Rows& rows, int last_level);
 
 }  // namespace probewarp

@@ -1,12 +1,14 @@
-// A deformed mesh's triangles, and which place of the picture at rest their pixels show.
+// A deformed mesh's triangles: which place of the picture at rest their pixels show, and in which rows they
+// are.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <span>
+#include <vector>
 
 #include "raster/picture_drawer.h"
 
@@ -16,6 +18,8 @@ namespace probewarp {
 struct DeformedMesh {
     std::span<const glm::vec2> rest, now;      ///< #vertices, image pixels
     std::span<const std::uint32_t> triangles;  ///< #triangles x 3
+
+    std::size_t triangle_count() const { return triangles.size() / 3; }
 };
 
 /// A triangle's corners in the picture at rest, and where they are now: image pixels.
@@ -51,9 +55,29 @@ inline Lookup lookup_of(const Corners& corners, const View& view) {
             glm::dvec2(1 / view.scale.x, 0) + across, glm::dvec2(0, 1 / view.scale.y) + down};
 }
 
-/// How many of the picture's pixels a target pixel spans along its longer side there.
-inline double footprint(const Lookup& lookup) {
-    return std::max(std::hypot(lookup.across.x, lookup.across.y), std::hypot(lookup.down.x, lookup.down.y));
+/// How many of the picture's pixels a target pixel spans there along its longer side; squared.
+inline double footprint_squared(const Lookup& lookup) {
+    return std::max(glm::dot(lookup.across, lookup.across), glm::dot(lookup.down, lookup.down));
 }
+
+/// The mipmap to look up, 0 being the picture; its fraction is how much of the next one is mixed in:
+/// shaders/mesh.frag.
+float mipmap_level(double footprint_squared);
+
+/// How many mipmaps can be wanted where the view is drawn: 0 where nothing shrinks.
+int wanted_levels(const DeformedMesh& mesh, const View& view);
+
+/// Which triangles may show in which rows of a view.
+struct TriangleBins {
+    std::vector<std::size_t> first;        ///< #bins + 1: where each bin begins in `triangles`
+    std::vector<std::uint32_t> triangles;  ///< in each bin in the mesh's order
+
+    std::span<const std::uint32_t> bin(std::size_t i) const {
+        return std::span(triangles).subspan(first[i], first[i + 1] - first[i]);
+    }
+};
+
+/// rows: of each bin but the last
+TriangleBins bin_triangles(const DeformedMesh& mesh, const View& view, int rows);
 
 }  // namespace probewarp

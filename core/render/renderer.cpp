@@ -124,11 +124,11 @@ void Renderer::use_mesh_program(const View& view, int samples, bool with_overlay
     }
 }
 
-void Renderer::draw(const View& view, int samples, bool with_overlay) {
+void Renderer::draw(const View& view, int samples, bool with_overlay, int first_column) {
     with_overlay = with_overlay && overlay_style_;
     // Float, because the sums of weighted colours must give every byte of a file back.
     resize(layer_, view.width * samples, view.height * samples, GL_RGBA32F);
-    begin(layer_, view.first_column * samples);
+    begin(layer_, first_column * samples);
     const GLfloat nothing[4]{};
     glClearBufferfv(GL_COLOR, 0, nothing);
     use_mesh_program(view, samples, with_overlay);
@@ -147,12 +147,6 @@ void Renderer::draw(const View& view, int samples, bool with_overlay) {
 void Renderer::draw_picture() {
     glBindVertexArray(picture_array_.name());
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-}
-
-void Renderer::render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                      TriangleRun) {
-    draw(view, style.samples, style.overlay);
-    read_back(image, left, top, view, style.samples, style.background);
 }
 
 void Renderer::read_back(Image& image, int left, int top, const View& view, int samples,
@@ -194,9 +188,10 @@ void Renderer::read_integers(Image& image, int left, int top, const View& view) 
     check_gl("reading the picture back");
 }
 
-GLuint Renderer::display(const View& view, const DisplayColours& colours, double square, bool lines) {
+GLuint Renderer::display(const View& view, const DisplayColours& colours, double square, bool lines,
+                         int first_column) {
     resize(shown_, view.width, view.height, GL_RGBA8);
-    begin(shown_, view.first_column);
+    begin(shown_, first_column);
     const GlProgram& program = display_program_.get();
     glUseProgram(program.name());
     const glm::dvec2 corner = -view.origin * view.scale;

@@ -1,6 +1,5 @@
-// Draws the deformed picture: the one renderer of window, command line, tests and export.
-// Everything is drawn into framebuffers of its own, whose first row is the top one, so nothing is ever
-// flipped.
+// Draws the deformed picture by OpenGL: the window's renderer, and a heat map's in a file. Everything is
+// drawn into framebuffers of its own, whose first row is the top one, so nothing is ever flipped.
 #pragma once
 
 #include <array>
@@ -45,7 +44,7 @@ struct OverlayStyle {
 inline constexpr std::array<Colour, 4> heat_colours{
     {{0x0d, 0x08, 0x87}, {0x9c, 0x17, 0x9e}, {0xed, 0x79, 0x53}, {0xf0, 0xf9, 0x21}}};
 
-class Renderer final : public PictureDrawer {
+class Renderer {
   public:
     /// Needs a loaded context, which must outlive it. What draws throws Error where a shader does not
     /// compile.
@@ -53,7 +52,7 @@ class Renderer final : public PictureDrawer {
 
     void set_picture(PictureTexture picture);
     /// Whether the picture is, everywhere.
-    bool is_opaque() const override { return picture_.opaque; }
+    bool is_opaque() const { return picture_.opaque; }
     void set_mesh(const Mesh& mesh);
     /// The mesh as the processor deformed it. now: #vertices of the mesh, image pixels. Where it has not
     /// `moved`, all of the picture is drawn as it is, with the cells that the mesh leaves out.
@@ -68,22 +67,20 @@ class Renderer final : public PictureDrawer {
     /// is set empty. vertices: #vertices of the mesh, or none
     void set_overlay(std::span<const OverlayVertex> vertices, const OverlayStyle& style = {});
 
-    /// Draws the deformed picture as weighted colours, samples x samples texels a target pixel.
-    void draw(const View& view, int samples, bool with_overlay = false);
+    /// Draws the deformed picture as weighted colours, samples x samples texels a target pixel. What is left
+    /// of first_column, target pixels, stays as it was.
+    void draw(const View& view, int samples, bool with_overlay = false, int first_column = 0);
 
     /// Turns what draw drew into straight-alpha integers, filled with `background` or as transparent as it
     /// is, and writes them at (left, top) of `image`, whose depth they take.
     void read_back(Image& image, int left, int top, const View& view, int samples,
                    std::optional<Colour> background);
 
-    /// draw and read_back.
-    void render(Image& image, int left, int top, const View& view, const FileStyle& style,
-                TriangleRun triangles) override;
-
     /// Shows what draw drew with one sample a pixel: over a checkerboard of squares of `square` pixels inside
-    /// the image's frame, dimmed beside it; with the mesh's lines where asked. Returns the texture that holds
-    /// it.
-    GLuint display(const View& view, const DisplayColours& colours, double square, bool lines);
+    /// the image's frame, dimmed beside it; with the mesh's lines where asked. first_column: as draw's.
+    /// Returns the texture that holds it.
+    GLuint display(const View& view, const DisplayColours& colours, double square, bool lines,
+                   int first_column = 0);
 
     /// Bytes of the mesh that were handed to the driver so far: for tests.
     std::size_t uploaded() const { return mesh_.uploaded(); }

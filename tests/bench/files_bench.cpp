@@ -15,7 +15,7 @@
 #include "raster/mipmaps.h"
 #include "raster/rasterizer.h"
 #include "render/context.h"
-#include "render/renderer.h"
+#include "render/driver_drawing.h"
 
 namespace probewarp {
 namespace {
@@ -224,8 +224,8 @@ Document pulled() {
     return document;
 }
 
-void draw(PictureDrawer& drawer, const Deformation& deformation) {
-    ExportJob job(drawer, deformation.source, deformation, {});
+void draw(PictureDrawer& drawer, const Deformation& deformation, const View& view) {
+    ExportJob job(drawer, deformation, view, {});
     while (!job.done()) benchmark::DoNotOptimize(job.next_band());
 }
 
@@ -233,17 +233,21 @@ void draw(PictureDrawer& drawer, const Deformation& deformation) {
 void draw_by_processor(benchmark::State& state) {
     Deformation deformation;
     update(deformation, pulled());
-    const Image& image = deformation.source.picture->image;
+    const View view = export_view(deformation, {});
     const auto context = open_context("auto");
     state.SetLabel(renderer_name());
     Renderer renderer;
-    renderer.set_picture(upload_picture(image));
+    renderer.set_picture(upload_picture(deformation.source.picture->image));
     renderer.set_mesh(mesh_of(deformation));
     renderer.set_positions(deformation.now, deformation.moved);
-    Rasterizer rasterizer(image, 1);
-    rasterizer.set_mesh(mesh_of(deformation), deformation.now, deformation.moved);
+    DriverDrawing by_driver(renderer, view, {});
     compare(
-        state, "over_driver", [&] { draw(rasterizer, deformation); }, [&] { draw(renderer, deformation); });
+        state, "over_driver",
+        [&] {
+            Rasterizer by_processor(deformation, view, {});
+            draw(by_processor, deformation, view);
+        },
+        [&] { draw(by_driver, deformation, view); });
 }
 BENCHMARK(draw_by_processor)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(5);
 

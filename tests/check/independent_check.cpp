@@ -361,23 +361,26 @@ void check_pixels(const std::string& input, int cells_x, int cells_y, const std:
     EXPECT_GT(judged, out.w * out.h / 4);  // or the check would say nothing
 }
 
-TEST(Pixels, OfAGentleDeformation) {
+/// What draws: the processor, which is the default, and two drivers.
+class Pixels : public testing::TestWithParam<const char*> {};
+
+TEST_P(Pixels, OfAGentleDeformation) {
     check_pixels("card.png", 12, 12,
-                 {{20, 20, 26, 17, 25, 30}, {70, 30, 66, 38, -15, 25}, {48, 80, 48, 80, 0, 40}}, "osmesa");
+                 {{20, 20, 26, 17, 25, 30}, {70, 30, 66, 38, -15, 25}, {48, 80, 48, 80, 0, 40}}, GetParam());
 }
-TEST(Pixels, OfSoftEdges) {
-    check_pixels("soft.png", 8, 8, {{20, 32, 14, 28, -30, 20}, {46, 32, 52, 40, 35, 20}}, "osmesa");
+TEST_P(Pixels, OfSoftEdges) {
+    check_pixels("soft.png", 8, 8, {{20, 32, 14, 28, -30, 20}, {46, 32, 52, 40, 35, 20}}, GetParam());
 }
-TEST(Pixels, OfAFold) {
-    check_pixels("soft.png", 8, 8, {{16, 32, 46, 30, 10, 20}, {48, 32, 20, 34, -10, 20}}, "osmesa");
+TEST_P(Pixels, OfAFold) {
+    check_pixels("soft.png", 8, 8, {{16, 32, 46, 30, 10, 20}, {48, 32, 20, 34, -10, 20}}, GetParam());
 }
-TEST(Pixels, OfAWidePicture) {
+TEST_P(Pixels, OfAWidePicture) {
     check_pixels("wide.png", 55, 2,
                  {{900, 20, 910, 16, 6, 100}, {1024, 20, 1018, 24, -8, 100}, {200, 20, 200, 20, 0, 100}},
-                 "osmesa");
+                 GetParam());
 }
-TEST(Pixels, OfEgl) {
-    check_pixels("card.png", 12, 12, {{30, 30, 40, 28, 45, 30}, {70, 70, 70, 70, -20, 25}}, "egl");
-}
+
+INSTANTIATE_TEST_SUITE_P(All, Pixels, testing::Values("auto", "osmesa", "egl"),
+                         [](const auto& p) { return std::string(p.param); });
 
 }  // namespace

@@ -106,7 +106,8 @@ TEST_P(GoldenTest, LooksAsItDid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GoldenTest,
-                         testing::Combine(testing::ValuesIn(goldens), testing::Values("osmesa", "egl")),
+                         testing::Combine(testing::ValuesIn(goldens),
+                                          testing::Values("auto", "osmesa", "egl")),
                          [](const auto& p) {
                              std::string name =
                                  std::string(std::get<0>(p.param).name) + "_" + std::get<1>(p.param);
@@ -238,7 +239,7 @@ TEST_P(ExactTest, AnExportMayBeLargerThanATexture) {
                 ASSERT_NEAR(pixel(out, 16 * x + 8, 16 * y + 8)[k], pixel(in, x, y)[k], 2) << x << ", " << y;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ExactTest, testing::Values("osmesa", "egl"),
+INSTANTIATE_TEST_SUITE_P(All, ExactTest, testing::Values("auto", "osmesa", "egl"),
                          [](const auto& p) { return std::string(p.param); });
 
 TEST(Refusal, OfAPictureLargerThanATexture) {
@@ -256,6 +257,9 @@ TEST(Refusal, OfAPictureLargerThanATexture) {
         std::string::npos)
         << run.errors;
     EXPECT_FALSE(fs::exists(folder / "out.png"));
+    // The processor needs no texture.
+    EXPECT_EQ(run_program({"render", folder / "long.png", "-o", folder / "out.png"}).code, 0);
+    EXPECT_EQ(read(folder / "out.png").rgba, image.rgba);
 }
 
 TEST(Refusal, OfAnExportThatIsTooLarge) {

@@ -1,12 +1,8 @@
-// Exporting's short cuts: drawing in parts, with the triangles that show there and the mipmaps that are
-// wanted, gives what drawing all of it with everything gives.
+// The driver's drawing in parts gives what drawing all of it gives.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 
-#include "exporting/export.h"
-#include "raster/rasterizer.h"
 #include "render/context.h"
 #include "scene.h"
 
@@ -20,12 +16,9 @@ TEST(Tiles, DoNotShow) {
         Scene scene(pulled(noise<std::uint8_t>(300, 200, clear), 0.3));
         const View view = scene.whole(15);
         Image whole = scene.blank(view);
-        scene.render(whole, view);
-        ExportSettings settings;
-        settings.scale = 15;
-        ExportJob job(scene.renderer, scene.document, scene.deformation, settings);
-        while (!job.done()) job.step();
-        const Image tiled = job.take();
+        scene.renderer.draw(view, 1);
+        scene.renderer.read_back(whole, 0, 0, view, 1, {});
+        const Image tiled = scene.by_driver(view);
         ASSERT_EQ(tiled.rgba.index(), whole.rgba.index());
         std::size_t others = 0, steps = 0;
         const auto &a = std::get<0>(tiled.rgba), &b = std::get<0>(whole.rgba);
@@ -40,61 +33,6 @@ TEST(Tiles, DoNotShow) {
         EXPECT_LE(others, 4u * 8);
         EXPECT_LE(double(steps), double(a.size()) / 128);
     }
-}
-
-/// What the processor draws, by these triangles and with so many mipmaps.
-Image drawn(const Scene& scene, const View& view, TriangleRun triangles, int levels) {
-    Rasterizer rasterizer(scene.document.picture->image, levels);
-    rasterizer.set_mesh(mesh_of(scene.deformation), scene.deformation.now, scene.deformation.moved);
-    Image image = scene.blank(view);
-    rasterizer.render(image, 0, 0, view, {}, triangles);
-    return image;
-}
-
-TEST(Footprints, WhatIsNotWithinAPartDoesNotShowThere) {
-    const auto context = open_context("osmesa");
-    std::size_t within = 0, all = 0;
-    for (const double angle : {0.0, 0.4, 1.5})
-        for (const bool folded : {false, true}) {
-            Document document = pulled(noise<std::uint8_t>(400, 300), angle);
-            if (folded) document.probes[0].now.x += 250;  // later triangles lie over earlier ones
-            const Scene scene(document);
-            const View whole = scene.whole(0.97);
-            for (int top = 0; top < whole.height; top += 64)
-                for (int left = 0; left < whole.width; left += 150) {
-                    View part = whole;
-                    part.origin += glm::dvec2(left, top) / whole.scale;
-                    part.width = 150, part.height = 64;
-                    const TriangleRun some = TriangleBoxes(scene.deformation).within(part);
-                    ASSERT_EQ(drawn(scene, part, some, 1).rgba,
-                              drawn(scene, part, everything(scene.deformation), 1).rgba)
-                        << left << ", " << top << ", " << angle;
-                    within += some.count;
-                    all += everything(scene.deformation).count;
-                }
-        }
-    EXPECT_LT(within, all / 2) << "else nothing is saved";
-}
-
-TEST(Footprints, MoreLevelsThanWantedChangeNothing) {
-    const auto context = open_context("osmesa");
-    for (const double scale : {1.0, 0.99, 0.9, 0.51, 0.5, 0.49, 0.26, 0.24, 0.05})
-        for (const bool moved : {true, false}) {
-            Document document = pulled(noise<std::uint8_t>(400, 300), 0.3);
-            if (!moved) document.probes.clear();
-            Scene scene(document);
-            const View view = scene.whole(scale);
-            const int wanted = wanted_levels(scene.deformation, view);
-            const TriangleRun triangles = everything(scene.deformation);
-            EXPECT_EQ(drawn(scene, view, triangles, wanted).rgba, drawn(scene, view, triangles, 31).rgba)
-                << scale;
-            if (!moved && scale == 1.0) {
-                EXPECT_EQ(wanted, 0);
-            }
-            if (!moved && scale == 0.51) {
-                EXPECT_EQ(wanted, 1) << "no more than are";
-            }
-        }
 }
 
 }  // namespace

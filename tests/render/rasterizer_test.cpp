@@ -58,21 +58,11 @@ void expect_alike(const Image& a, const Image& b) {
     EXPECT_LE(found.steps, found.values / 64);
 }
 
-Image drawn_by_processor(const Scene& scene, const View& view, const FileStyle& style = {}) {
-    const Image& picture = scene.document.picture->image;
-    Rasterizer rasterizer(picture, 31);
-    rasterizer.set_mesh(mesh_of(scene.deformation), scene.deformation.now, scene.deformation.moved);
-    Image image = scene.blank(view);
-    rasterizer.render(image, 0, 0, view, style, everything(scene.deformation));
-    return image;
-}
-
 void expect_as_the_driver(const Document& document, double scale, const FileStyle& style = {}) {
     Scene scene(document);
     const View view = scene.whole(scale);
-    Image by_driver = scene.blank(view);
-    scene.render(by_driver, view, style);
-    with_every_instruction_set([&] { expect_alike(drawn_by_processor(scene, view, style), by_driver); });
+    const Image by_driver = scene.by_driver(view, style);
+    with_every_instruction_set([&] { expect_alike(scene.by_processor(view, style), by_driver); });
 }
 
 TEST(Rasterizer, DrawsAsTheDriverDoes) {
@@ -121,10 +111,10 @@ TEST(Rasterizer, LeavesTrianglesWithoutAnAreaOut) {
     const View view = scene.whole(1);
     const Image nothing = scene.blank(view);
     for (glm::vec2& now : scene.deformation.now) now = {30.5f, now.y};
-    with_every_instruction_set([&] { EXPECT_EQ(drawn_by_processor(scene, view).rgba, nothing.rgba); });
+    with_every_instruction_set([&] { EXPECT_EQ(scene.by_processor(view).rgba, nothing.rgba); });
     // Corners that have an area on the grid of 1/256 of a pixel, but none that tells what to show.
     for (glm::vec2& now : scene.deformation.now) now = {30.501f + now.y * 1e-4f, now.y};
-    with_every_instruction_set([&] { drawn_by_processor(scene, view); });
+    with_every_instruction_set([&] { scene.by_processor(view); });
 }
 
 TEST(Rasterizer, DrawsThinPictures) {
@@ -147,23 +137,45 @@ TEST(Rasterizer, GivesAnUndeformedPictureBack) {
         at_rest.deformation.moved = true;  // by the mesh, not as the one picture that it is
         with_every_instruction_set([&] {
             for (const Scene* scene : {&still, &std::as_const(at_rest)})
-                EXPECT_EQ(drawn_by_processor(*scene, scene->whole(1)).rgba, picture->image.rgba);
+                EXPECT_EQ(scene->by_processor(scene->whole(1)).rgba, picture->image.rgba);
         });
     }
 }
 
-TEST(Rasterizer, TilesDoNotShow) {
+TEST(Rasterizer, BandsDoNotShow) {
     const auto context = open_context("osmesa");
-    const Scene scene(pulled(noise<std::uint8_t>(300, 200), 0.3));
-    const View view = scene.whole(15);
-    const Image whole = drawn_by_processor(scene, view);
-    Rasterizer rasterizer(scene.document.picture->image, 31);
-    rasterizer.set_mesh(mesh_of(scene.deformation), scene.deformation.now, scene.deformation.moved);
-    ExportSettings settings;
-    settings.scale = 15;
-    ExportJob job(rasterizer, scene.document, scene.deformation, settings);
-    while (!job.done()) job.step();
-    expect_alike(job.take(), whole);
+    for (const int samples : {1, 3, 16}) {
+        const Scene scene(pulled(noise<std::uint8_t>(300, 200), 0.3));
+        const View view = scene.whole(4.01);  // the last band is not whole
+        const FileStyle style{samples, {}, false};
+        Rasterizer rasterizer(scene.deformation, view, style);
+        EXPECT_EQ(exported(rasterizer, scene.deformation, view, style).rgba,
+                  scene.by_processor(view, style).rgba);
+    }
+}
+
+TEST(Rasterizer, LevelsThatAreWantedAreThere) {
+    // As the driver draws with all mipmaps.
+    const auto context = open_context("osmesa");
+    for (const double scale : {1.0, 0.99, 0.9, 0.51, 0.5, 0.49, 0.26, 0.24, 0.05}) {
+        expect_as_the_driver(pulled(noise<std::uint8_t>(400, 300), 0.3), scale);
+        Document still = pulled(noise<std::uint8_t>(400, 300), 0.3);
+        still.probes.clear();
+        expect_as_the_driver(still, scale);
+    }
+}
+
+TEST(Triangles, WantNoMoreLevelsThanTheyShow) {
+    const std::vector<glm::vec2> corners{{0, 0}, {300, 0}, {0, 200}};
+    const std::vector<std::uint32_t> one{0, 1, 2};
+    const DeformedMesh mesh{corners, corners, one};
+    const auto wanted = [&](double scale) { return wanted_levels(mesh, {{}, glm::dvec2(scale), 300, 200}); };
+    EXPECT_EQ(wanted(2), 0);
+    EXPECT_EQ(wanted(1), 0);
+    EXPECT_EQ(wanted(0.9), 1);
+    EXPECT_EQ(wanted(0.51), 1);
+    EXPECT_EQ(wanted(0.49), 2);
+    EXPECT_EQ(wanted_levels(mesh, {{400, 400}, glm::dvec2(0.1), 30, 20}), 0) << "nothing shows there";
 }
 
 }  // namespace

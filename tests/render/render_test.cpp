@@ -119,10 +119,10 @@ PicturePtr ramp(int side) {
     return std::make_shared<const Picture>(std::move(picture));
 }
 
-Image exported(Renderer& renderer, const Document& document, const Deformation& deformation) {
-    ExportJob job(renderer, document, deformation, {});
-    while (!job.done()) job.step();
-    return job.take();
+Image exported(Renderer& renderer, const Deformation& deformation) {
+    const View view = export_view(deformation, {});
+    DriverDrawing drawing(renderer, view, {});
+    return exported(drawing, deformation, view);
 }
 
 /// A renderer that holds a document's picture and its deformed mesh.
@@ -161,9 +161,9 @@ void expect_shader_deforms_as_the_processor(const char* backend) {
         renderer.set_mesh(mesh_of(deformation));
         renderer.set_weights(weights_of(deformation));
         renderer.set_pose(deformation.transformations, {128, 128});
-        const Image shader = exported(renderer, document, deformation);
+        const Image shader = exported(renderer, deformation);
         renderer.set_positions(deformation.now, deformation.moved);
-        const Image processor = exported(renderer, document, deformation);
+        const Image processor = exported(renderer, deformation);
         // A hundredth of a pixel is 2.6 of the 256 levels that the ramp climbs a pixel; on the border, a
         // pixel may be covered by one of the two only.
         int far = 0;
@@ -194,7 +194,7 @@ TEST(VertexShader, GivesSmallWeightsAFinitePlaceToo) {
     const auto drawn = [&](float weight) {
         renderer.set_weights(std::vector<float>(deformation.now.size(), weight));
         renderer.set_pose(deformation.transformations, {32, 32});
-        return exported(renderer, document, deformation);
+        return exported(renderer, deformation);
     };
     const Image whole = drawn(1);
     for (const float weight : {1e-10f, 1e-18f, 1e-20f, 1e-30f, 1e-38f}) {
@@ -270,17 +270,17 @@ TEST(DeformTrial, MeasuresBothAndLeavesTheRenderersMeshAlone) {
     update(deformation, document);
     Renderer renderer;
     prepare(renderer, document, deformation);
-    const Image before = exported(renderer, document, deformation);
+    const Image before = exported(renderer, deformation);
     // What the renderer draws into holds another picture now, in case that it draws nothing afterwards.
     renderer.set_positions(mesh_of(deformation).rest, false);
-    ASSERT_NE(exported(renderer, document, deformation).rgba, before.rgba);
+    ASSERT_NE(exported(renderer, deformation).rgba, before.rgba);
     renderer.set_positions(deformation.now, deformation.moved);
     const auto times = measured_deform_times();
     ASSERT_TRUE(times);
     EXPECT_GT(times->processor, 0);
     EXPECT_GT(times->shader, 0);
     EXPECT_LT(std::max(times->processor, times->shader), 1000);  // milliseconds, not seconds or less
-    EXPECT_EQ(exported(renderer, document, deformation).rgba, before.rgba);
+    EXPECT_EQ(exported(renderer, deformation).rgba, before.rgba);
 }
 
 TEST(DeformTrial, IsNotChargedForWhatWasDrawnBefore) {
@@ -348,8 +348,8 @@ TEST(Upload, IsOfTheVerticesThatMovedAndNothingElse) {
     other.set_picture(upload_picture(document.picture->image));
     other.set_mesh(mesh_of(deformation));
     other.set_positions(now, true);
-    const Image drawn = exported(renderer, document, deformation);
-    EXPECT_EQ(drawn.rgba, exported(other, document, deformation).rgba);
+    const Image drawn = exported(renderer, deformation);
+    EXPECT_EQ(drawn.rgba, exported(other, deformation).rgba);
 
     // Once the shader has moved them nobody knows where they are.
     renderer.set_weights(weights_of(deformation));
@@ -357,7 +357,7 @@ TEST(Upload, IsOfTheVerticesThatMovedAndNothingElse) {
     renderer.set_pose(deformation.transformations, {32, 32});
     EXPECT_EQ(renderer.uploaded() - before, 4 * sizeof(float));
     EXPECT_EQ(handed_over(now), now.size() * a_vertex);
-    EXPECT_EQ(exported(renderer, document, deformation).rgba, drawn.rgba);
+    EXPECT_EQ(exported(renderer, deformation).rgba, drawn.rgba);
 }
 
 TEST(Sampling, AWholePixelShiftIsExactAlsoWhereVerticesAreRounded) {
@@ -383,7 +383,7 @@ TEST(Sampling, AWholePixelShiftIsExactAlsoWhereVerticesAreRounded) {
     renderer.set_picture(upload_picture(document.picture->image));
     renderer.set_mesh(mesh_of(deformation));
     renderer.set_positions(deformation.now, deformation.moved);
-    const Image shifted = exported(renderer, document, deformation);
+    const Image shifted = exported(renderer, deformation);
     int wrong = 0;
     for (int y = down; y < height; ++y)
         for (int x = right; x < width; ++x)
@@ -422,7 +422,7 @@ TEST(Outline, CellsThatAreLeftOutChangeNoUndeformedByte) {
         update(deformation, document);
         ASSERT_LT(mesh_of(deformation).triangles.size(), std::size_t{3} * 2 * 40 * 40);
         prepare(renderer, document, deformation);
-        const Image same = exported(renderer, document, deformation);
+        const Image same = exported(renderer, deformation);
         EXPECT_EQ(same.rgba, document.picture->image.rgba) << document.probes.size() << " probes";
     }
 }
@@ -443,7 +443,7 @@ TEST(Outline, WhatIsVisibleMovesWhole) {
     update(deformation, document);
     ASSERT_LT(mesh_of(deformation).triangles.size(), std::size_t{3} * 2 * 40 * 40);
     prepare(renderer, document, deformation);
-    const Image moved = exported(renderer, document, deformation);
+    const Image moved = exported(renderer, deformation);
     const Image& picture = document.picture->image;
     int visible = 0, wrong = 0;
     for (int y = 0; y < 120; ++y)

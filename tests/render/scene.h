@@ -8,7 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "exporting/export.h"
 #include "model/deformation.h"
+#include "raster/rasterizer.h"
+#include "render/driver_drawing.h"
 #include "render/picture_texture.h"
 #include "render/renderer.h"
 
@@ -56,11 +59,6 @@ inline Document pulled(PicturePtr picture, double angle) {
     return document;
 }
 
-/// All triangles.
-inline TriangleRun everything(const Deformation& deformation) {
-    return {0, mesh_of(deformation).triangles.size() / 3};
-}
-
 /// A view's pixels, as deep as the image.
 inline Image blank(const Image& like, const View& view) {
     Image image;
@@ -74,6 +72,24 @@ inline Image blank(const Image& like, const View& view) {
     return image;
 }
 
+/// The whole export, of its bands.
+inline Image exported(PictureDrawer& drawer, const Deformation& deformation, const View& view,
+                      const FileStyle& style = {}) {
+    ExportJob job(drawer, deformation, view, style);
+    Image whole = blank(job.like(), view);
+    std::visit(
+        [&](auto& all) {
+            for (auto to = all.begin(); !job.done();) {
+                const Image band = job.next_band();
+                const auto& some = std::get<std::remove_reference_t<decltype(all)>>(band.rgba);
+                to = std::copy(some.begin(), some.end(), to);
+            }
+        },
+        whole.rgba);
+    return whole;
+}
+
+/// A picture under its probes, and the driver's renderer with it. Needs a context.
 struct Scene {
     Document document;
     Deformation deformation;
@@ -95,8 +111,16 @@ struct Scene {
     }
 
     /// What the driver draws.
-    void render(Image& image, const View& view, const FileStyle& style = {}) {
-        renderer.render(image, 0, 0, view, style, everything(deformation));
+    Image by_driver(const View& view, const FileStyle& style = {}) {
+        Image image = blank(view);
+        DriverDrawing(renderer, view, style).draw_rows(0, image);
+        return image;
+    }
+    /// What the processor draws.
+    Image by_processor(const View& view, const FileStyle& style = {}) const {
+        Image image = blank(view);
+        Rasterizer(deformation, view, style).draw_rows(0, image);
+        return image;
     }
 
     Image blank(const View& view) const { return probewarp::blank(document.picture->image, view); }

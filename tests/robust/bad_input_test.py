@@ -53,7 +53,7 @@ class BadFiles(unittest.TestCase):
 
     def ways(self, path, quick, options):
         """The command lines that a bad input is tried with, and whether the output is there before."""
-        render = ["render", path, "-o", self.output, "--backend", "osmesa"]
+        render = ["render", path, "-o", self.output]
         every = [(render, True), (render, False), (["info", path, "--backend", "osmesa"], True),
                  (["info", path, "--json"], False)]
         if options:
@@ -113,7 +113,7 @@ class BadFiles(unittest.TestCase):
         path = self.place(name)
         write(path, data)
         with self.subTest(file=name):
-            result = program.measured("render", path, "-o", self.output, "--backend", "osmesa", limit=SECONDS * slack)
+            result = program.measured("render", path, "-o", self.output, limit=SECONDS * slack)
             self.assertIn(result.code, (0, 1), result)
             self.assertLessEqual(result.seconds, SECONDS * slack, result)
             self.assertLessEqual(result.mib, MIB * slack, result)
@@ -634,7 +634,7 @@ class BadFiles(unittest.TestCase):
         }
         for option, bad in values.items():
             for value in bad:
-                self.wrong_usage("render", good, "-o", self.output, "--backend", "osmesa", f"{option}={value}") \
+                self.wrong_usage("render", good, "-o", self.output, f"{option}={value}") \
                     if option != "--backend" else self.wrong_usage("render", good, "-o", self.output, f"{option}={value}")
             self.wrong_usage("render", good, "-o", self.output, option)
         self.wrong_usage("render", good, "-o", self.output, "--size", "5x5", "--scale", "2")

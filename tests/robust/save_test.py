@@ -43,7 +43,7 @@ class Saving(unittest.TestCase):
 
     def command(self, target, version):
         """Two versions of the same document, told apart by their probe."""
-        return ["render", self.source, "--probe", f"3,3:{4 + version},3", "-o", target, "--backend", "osmesa"]
+        return ["render", self.source, "--probe", f"3,3:{4 + version},3", "-o", target]
 
     def whole(self, name):
         """Both versions' bytes, and the seconds that saving takes at most."""
