@@ -117,6 +117,23 @@ TEST(Rasterizer, LeavesTrianglesWithoutAnAreaOut) {
     with_every_instruction_set([&] { scene.by_processor(view); });
 }
 
+TEST(Rasterizer, VerticesMayBeFarAway) {
+    const auto context = open_context("osmesa");
+    Scene scene(pulled(noise<std::uint8_t>(60, 40), 0.4));
+    const View view = scene.whole(1);
+    std::mt19937 random(5);
+    for (const float far : {1e5f, 1e7f, 1e15f, 1e30f}) {
+        std::uniform_real_distribution<float> place(-far, far);
+        for (glm::vec2& now : scene.deformation.now) now = {place(random), place(random)};
+        for (const int samples : {1, 4})
+            with_every_instruction_set([&] {
+                const Image image = scene.by_processor(view, {samples, Colour{1, 2, 3}, false});
+                for (int y = 0; y < view.height; ++y)
+                    for (int x = 0; x < view.width; ++x) ASSERT_EQ(pixel(image, x, y)[3], 255);
+            });
+    }
+}
+
 TEST(Rasterizer, DrawsThinPictures) {
     const auto context = open_context("osmesa");
     for (const auto& picture :
