@@ -29,7 +29,10 @@ std::vector<std::string> names(const Rows& rows) {
 }
 
 void add_backend(CLI::App& command, std::string& backend) {
-    command.add_option("--backend", backend, "auto, osmesa or egl")
+    command
+        .add_option(
+            "--backend", backend,
+            "what draws: osmesa, egl, or auto: the processor, but for a heat map the first that works")
         ->check(CLI::IsMember({"auto", "osmesa", "egl"}))
         ->envname("PROBEWARP_BACKEND");
 }

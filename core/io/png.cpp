@@ -133,7 +133,10 @@ void set_limits(spng_ctx* spng) {
 /// The header, after which libspng is ready to decode. `parts` must outlive the decoding.
 spng_ihdr open_stream(spng_ctx* spng, Parts& parts) {
     set_limits(spng);
-    check(spng_set_png_stream(spng, read_parts, &parts));
+    if (parts.spans.size() == 1)  // nothing was left out: libspng need not copy it
+        check(spng_set_png_buffer(spng, parts.spans[0].data(), parts.spans[0].size()));
+    else
+        check(spng_set_png_stream(spng, read_parts, &parts));
     spng_ihdr ihdr{};
     check(spng_get_ihdr(spng, &ihdr));
     return ihdr;

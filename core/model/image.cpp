@@ -4,7 +4,9 @@
 #include <oneapi/tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
+#include <cstring>
 #include <functional>
 #include <limits>
 
@@ -26,22 +28,28 @@ std::array<int, 4> pixel(const Image& image, int x, int y) {
 
 namespace {
 
-template <class Sample>
+/// Pixel: an unsigned integer as long as four samples
+template <class Pixel, class Sample>
 bool all_opaque(std::span<const Sample> rgba) {
-    constexpr std::size_t at_once = 4096;  // without looking whether it is decided
-    constexpr Sample full = std::numeric_limits<Sample>::max();
-    for (; !rgba.empty(); rgba = rgba.subspan(std::min(at_once, rgba.size()))) {
-        Sample all = full;
-        for (std::size_t i = 3; i < std::min(at_once, rgba.size()); i += 4) all = Sample(all & rgba[i]);
-        if (all != full) return false;
+    static_assert(sizeof(Pixel) == 4 * sizeof(Sample));
+    constexpr std::size_t at_once = 1024;  // pixels, without looking whether it is decided
+    const std::size_t pixels = rgba.size() / 4;
+    for (std::size_t first = 0; first < pixels; first += at_once) {
+        Pixel all = std::numeric_limits<Pixel>::max();
+        for (std::size_t i = first; i < std::min(first + at_once, pixels); ++i) {
+            Pixel pixel;
+            std::memcpy(&pixel, &rgba[4 * i], sizeof pixel);
+            all &= pixel;
+        }
+        if (std::bit_cast<std::array<Sample, 4>>(all)[3] != std::numeric_limits<Sample>::max()) return false;
     }
     return true;
 }
 
 }  // namespace
 
-bool is_opaque(std::span<const std::uint8_t> rgba) { return all_opaque(rgba); }
-bool is_opaque(std::span<const std::uint16_t> rgba) { return all_opaque(rgba); }
+bool is_opaque(std::span<const std::uint8_t> rgba) { return all_opaque<std::uint32_t>(rgba); }
+bool is_opaque(std::span<const std::uint16_t> rgba) { return all_opaque<std::uint64_t>(rgba); }
 
 bool has_alpha(const Image& image) {
     using Range = oneapi::tbb::blocked_range<std::size_t>;
