@@ -1,5 +1,6 @@
 // `probewarp render`: a picture or a project in, the deformed picture, mesh or project out.
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -181,7 +182,20 @@ int render_all(const RenderOptions& o, OutputFormat format, Timings& timings) {
 
 }  // namespace
 
+namespace {
+
+/// Bands of rows come and go: their memory is better used again than given back, and cleared, each time.
+void keep_freed_memory() {
+#ifdef M_MMAP_THRESHOLD
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, 64 << 20);
+#endif
+}
+
+}  // namespace
+
 int render(const RenderOptions& o) {
+    keep_freed_memory();
     Timings timings;
     const OutputFormat format = output_format(o);
     export_settings(o);  // throws where they cannot be understood

@@ -179,12 +179,12 @@ BENCHMARK_CAPTURE(program_against_its_files, jpeg, "jpeg")
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime()
     ->MeasureProcessCPUTime()
-    ->Iterations(5);
+    ->Iterations(9);
 BENCHMARK_CAPTURE(program_against_its_files, png, "png")
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime()
     ->MeasureProcessCPUTime()
-    ->Iterations(5);
+    ->Iterations(9);
 
 /// The whole program on a picture of 512 pixels, from PNG to PNG.
 void render_of_512_pixels(benchmark::State& state) {
