@@ -368,6 +368,9 @@ TEST_P(Pixels, OfAGentleDeformation) {
     check_pixels("card.png", 12, 12,
                  {{20, 20, 26, 17, 25, 30}, {70, 30, 66, 38, -15, 25}, {48, 80, 48, 80, 0, 40}}, GetParam());
 }
+TEST_P(Pixels, OfATurnBesideOneThatStays) {
+    check_pixels("card.png", 12, 12, {{30, 30, 40, 28, 45, 30}, {70, 70, 70, 70, -20, 25}}, GetParam());
+}
 TEST_P(Pixels, OfSoftEdges) {
     check_pixels("soft.png", 8, 8, {{20, 32, 14, 28, -30, 20}, {46, 32, 52, 40, 35, 20}}, GetParam());
 }

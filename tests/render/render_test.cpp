@@ -77,6 +77,17 @@ TEST(Mipmaps, AreAlphaWeightedMeansDownToOnePixel) {
     EXPECT_EQ(levels[1].width * levels[1].height, 1);
 }
 
+TEST(Opacity, OneClearPixelIsFound) {
+    // In the last of a texture's uploads, which hold a million pixels each.
+    const auto context = open_context("osmesa");
+    for (const int clear : {-1, 1100}) {
+        const Scene scene(pulled(noise<std::uint8_t>(1300, 1200, clear), 0.2));
+        const bool opaque = clear < 0;
+        EXPECT_EQ(scene.renderer.is_opaque(), opaque);
+        EXPECT_EQ(Rasterizer(scene.deformation, scene.whole(1), {}).is_opaque(), opaque);
+    }
+}
+
 /// The alpha-weighted mean of four pixels in double, rounded.
 std::array<int, 4> mean_of(const Image& image, int x, int y) {
     double weighted[3]{}, plain[3]{}, alpha = 0;
