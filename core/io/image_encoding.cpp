@@ -93,7 +93,8 @@ FileParts ImageEncoding::finish() {
 void ImageEncoding::add_beginning(FileParts& parts) {
     if (begun_) return;
     begun_ = true;
-    parts.insert(parts.begin(), png_beginning(png_shape(whole_, transparent_), whole_.icc, whole_.resolution));
+    parts.insert(parts.begin(),
+                 png_beginning(png_shape(whole_, transparent_), whole_.icc, whole_.resolution));
 }
 
 }  // namespace probewarp
