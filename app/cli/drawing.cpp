@@ -79,7 +79,9 @@ bool drawn_by_processor(const RenderPlan& plan) {
 void Drawer::hold(const Deformation& deformation) {
     if (!offscreen_) offscreen_.emplace(plan_.options.backend);
     Renderer& renderer = offscreen_->renderer;
-    const Image& image = deformation.source.picture->image;
+    const Picture& picture = *deformation.source.picture;
+    const Image& image = picture.image;
+    wait_for_rows(picture, image.height);
     renderer.set_picture(upload_picture(image));
     renderer.set_mesh(mesh_of(deformation));
     if (plan_.options.deform == "shader") {

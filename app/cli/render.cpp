@@ -110,9 +110,9 @@ void write_output(const RenderOptions& o, std::span<const std::byte> bytes, Timi
 }
 
 /// The one picture of `--image`, or null for the input's own.
-PicturePtr other_picture(const RenderOptions& o) {
+PicturePtr other_picture(const RenderOptions& o, Pixels pixels) {
     if (o.images.empty()) return nullptr;
-    return std::make_shared<Picture>(read_picture(o.images.front()));
+    return std::make_shared<Picture>(read_picture(o.images.front(), pixels));
 }
 
 void check_not_the_input(const RenderOptions& o, const std::filesystem::path& output) {
@@ -141,6 +141,13 @@ void render_picture(const RenderOptions& o, const ImageFormat& format, const Def
     const auto encoding = timings.measure(Stage::draw, [&] {
         return Drawer(plan).draw(deformation, output, [&](double part) { progress.show(part); });
     });
+    const Picture& picture = *deformation.source.picture;
+    wait_for_rows(picture, picture.image.height);  // what does not show must be sound too
+    if (picture.arriving) {
+        const auto [decoding, waiting] = picture.arriving->times();
+        timings.add(Stage::decode, decoding);
+        timings.add(Stage::draw, -waiting);
+    }
     output.write(timings.measure(Stage::encode, [&] { return encoding->finish(); }));
     output.finish();
 }
@@ -151,8 +158,12 @@ void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
             fmt::format("-o {}: one file for {} pictures; expected {{name}} in it, such as "
                         "DIR/{{name}}.png",
                         o.output, o.images.size()));
-    const Document document =
-        timings.measure(Stage::decode, [&] { return posed_on(read_document(o.input), other_picture(o), o); });
+    // A picture is drawn while it is still being decoded.
+    const Pixels pixels = format.kind == Kind::image ? Pixels::arriving : Pixels::whole;
+    const Document document = timings.measure(Stage::decode, [&] {
+        return posed_on(read_document(o.input, o.images.empty() ? pixels : Pixels::whole),
+                        other_picture(o, pixels), o);
+    });
     check_deform(o, document);
     check_heat(o, format.kind, document);
     if (format.kind == Kind::project) return write_output(o, encode_project(document), timings);

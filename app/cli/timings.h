@@ -25,6 +25,11 @@ class Timings {
         return work();
     }
 
+    void add(Stage stage, double seconds) {
+        const std::lock_guard lock(mutex_);
+        seconds_[std::size_t(stage)] += seconds;
+    }
+
     /// To standard error, a line for each stage and one for all, which is less where stages overlapped; and
     /// the most memory that was held, where the system tells.
     void print() const {
@@ -57,11 +62,7 @@ class Timings {
         Stage stage;
         Clock::time_point start = Clock::now();
 
-        ~Watch() {
-            const double seconds = seconds_since(start);
-            const std::lock_guard lock(timings.mutex_);
-            timings.seconds_[std::size_t(stage)] += seconds;
-        }
+        ~Watch() { timings.add(stage, seconds_since(start)); }
     };
 
     Clock::time_point start_ = Clock::now();

@@ -24,6 +24,9 @@ Image decode_gif(Bytes bytes);  ///< the first frame on its canvas
 Image decode_psd(Bytes bytes);  ///< the merged picture
 Image decode_pnm(Bytes bytes);
 
+std::unique_ptr<RowReader> read_png_rows(Bytes bytes);
+std::unique_ptr<RowReader> read_jpeg_rows(Bytes bytes);
+
 std::vector<std::byte> encode_png(const Image& image, const EncodeOptions& options);
 /// 16-bit grey (1 channel) or grey with alpha (2). samples: height x width x channels
 std::vector<std::byte> encode_png_samples(int width, int height, int channels,

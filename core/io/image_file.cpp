@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <new>
 
 #include "io/file.h"
 #include "io/formats.h"
 #include "io/printable.h"
+#include "io/row_reader.h"
 
 namespace probewarp {
 
@@ -38,13 +38,13 @@ bool is_pnm(Bytes bytes) {
 
 // TGA stands last: it has no signature, so it is tried only for a file that nothing else claims.
 constexpr std::array<ImageFormat, 7> formats{{
-    {"png", "PNG", png_endings, is_png, decode_png, encode_png},
-    {"jpeg", "JPEG", jpeg_endings, is_jpeg, decode_jpeg, encode_jpeg},
-    {"bmp", "BMP", bmp_endings, is_bmp, decode_bmp, encode_bmp},
-    {"gif", "GIF", gif_endings, is_gif, decode_gif, nullptr},
-    {"psd", "PSD", psd_endings, is_psd, decode_psd, nullptr},
-    {"pnm", "PNM", pnm_endings, is_pnm, decode_pnm, nullptr},
-    {"tga", "TGA", tga_endings, looks_like_tga, decode_tga, encode_tga},
+    {"png", "PNG", png_endings, is_png, decode_png, read_png_rows, encode_png},
+    {"jpeg", "JPEG", jpeg_endings, is_jpeg, decode_jpeg, read_jpeg_rows, encode_jpeg},
+    {"bmp", "BMP", bmp_endings, is_bmp, decode_bmp, nullptr, encode_bmp},
+    {"gif", "GIF", gif_endings, is_gif, decode_gif, nullptr, nullptr},
+    {"psd", "PSD", psd_endings, is_psd, decode_psd, nullptr, nullptr},
+    {"pnm", "PNM", pnm_endings, is_pnm, decode_pnm, nullptr, nullptr},
+    {"tga", "TGA", tga_endings, looks_like_tga, decode_tga, nullptr, encode_tga},
 }};
 
 constexpr std::array<CompressionName, 3> compression_names{{{"fast", "Fast", Compression::fast},
@@ -100,25 +100,31 @@ struct SourceBytes {
 
 }  // namespace
 
-Picture decode_picture(std::vector<std::byte> bytes, const std::string& name) {
+Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pixels pixels) {
     const SourceBytes counted(bytes.size());
     const std::string called = printable(name);
     const ImageFormat* format = recognised_format(bytes, name);
     if (!format)
         throw Error(called +
                     ": is not a picture that can be read; expected PNG, JPEG, BMP, TGA, GIF, PSD or PNM");
-    try {
-        Image image = format->decode(bytes);
-        return {std::move(image), name_without_folder(name), std::string(format->name), std::move(bytes)};
-    } catch (const Error& error) {
-        throw Error(called + ": " + printable(error.what()));
-    } catch (const std::bad_alloc&) {
-        throw Error(called + ": needs more memory than there is; expected a smaller picture");
-    }
+    Picture picture{{}, name_without_folder(name), std::string(format->name), std::move(bytes), nullptr};
+    call_it(called, [&] {
+        if (pixels == Pixels::whole || !format->read_rows) {
+            picture.image = format->decode(picture.original);
+            return;
+        }
+        auto reader = format->read_rows(picture.original);
+        picture.image = reader->blank();
+        if (picture.image.opaque)
+            picture.arriving = read_beside(std::move(reader), picture.image, called);
+        else
+            read_all(*reader, picture.image);
+    });
+    return picture;
 }
 
-Picture read_picture(const std::filesystem::path& path) {
-    return decode_picture(read_file(path), path.string());
+Picture read_picture(const std::filesystem::path& path, Pixels pixels) {
+    return decode_picture(read_file(path), path.string(), pixels);
 }
 
 void check_image_size(long long width, long long height, int bits) {

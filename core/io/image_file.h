@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,6 +32,8 @@ struct EncodeOptions {
     Compression compression = Compression::standard;  ///< of PNG
 };
 
+class RowReader;
+
 struct ImageFormat {
     std::string_view name;   ///< "png": what --format and the project file call it
     std::string_view label;  ///< "PNG": what a person reads
@@ -42,6 +45,8 @@ struct ImageFormat {
     /// RGBA; 16 bits a sample stay (PNG, PSD, PNM), all else is 8. ICC profiles are kept where they are for
     /// RGB (PNG, JPEG), the resolution where the file has one (PNG, JPEG, BMP).
     Image (*decode)(std::span<const std::byte> bytes);
+    /// decode in portions; null where it decodes all at once. The bytes must outlive it.
+    std::unique_ptr<RowReader> (*read_rows)(std::span<const std::byte> bytes);
     /// Null where the format is only read. Throws Error. The same image and options give the same bytes. PNG
     /// keeps everything; BMP and TGA round 16 bits to 8 and drop the profile; JPEG has the background under
     /// it besides.
@@ -57,13 +62,19 @@ const ImageFormat* find_image_format(std::string_view name);
 /// The format that the path's ending names, in any case, or null.
 const ImageFormat* image_format_of(const std::filesystem::path& path);
 
+/// How much of a picture is there when it is handed over.
+enum class Pixels {
+    whole,
+    arriving,  ///< rows may still be decoded beside, as Picture::arriving says
+};
+
 /// Decodes the bytes of an image file, whatever its ending says; `name` is what errors call it, and its
 /// ending is asked only for TGA, which has no signature. Throws Error: "NAME: what is wrong; what is
 /// expected".
-Picture decode_picture(std::vector<std::byte> bytes, const std::string& name);
+Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pixels pixels = Pixels::whole);
 
 /// read_file and decode_picture.
-Picture read_picture(const std::filesystem::path& path);
+Picture read_picture(const std::filesystem::path& path, Pixels pixels = Pixels::whole);
 
 /// Throws Error unless width, height and depth (8 or 16) are within max_image_side and max_image_bytes, and
 /// within max_decoding_bytes together with the file that decode_picture is at. Readers call it with the

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <new>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "io/exif.h"
 #include "io/formats.h"
 #include "io/jpeg_encoder.h"
+#include "io/row_reader.h"
 
 namespace probewarp {
 
@@ -149,22 +151,8 @@ void read_header(Decoder& decoder, Bytes bytes) {
     if (decoder.jpeg.arith_code) throw Error("is arithmetic-coded; expected a Huffman-coded JPEG file");
 }
 
-/// The rows as they come: RGBA, or CMYK in the same four bytes.
-void read_rows(Decoder& decoder, std::vector<std::uint8_t>& rgba) {
-    jpeg_decompress_struct& jpeg = decoder.jpeg;
-    unsigned char* rows = rgba.data();
-    decoder.run([&jpeg, rows] {
-        const std::size_t row_bytes = std::size_t(jpeg.output_width) * 4;
-        while (jpeg.output_scanline < jpeg.output_height) {
-            JSAMPROW row = rows + jpeg.output_scanline * row_bytes;
-            jpeg_read_scanlines(&jpeg, &row, 1);
-        }
-        jpeg_finish_decompress(&jpeg);  // reads up to the end marker
-    });
-}
-
 /// The plain conversion, without a profile. Adobe's programs store the inks inverted.
-void cmyk_to_rgba(std::vector<std::uint8_t>& samples, bool inverted) {
+void cmyk_to_rgba(std::span<std::uint8_t> samples, bool inverted) {
     for (std::size_t i = 0; i < samples.size(); i += 4) {
         const auto light = [&](std::size_t k) { return inverted ? samples[i + k] : 255u - samples[i + k]; };
         const unsigned k = light(3);
@@ -189,60 +177,115 @@ Exif read_exif(const jpeg_decompress_struct& jpeg) {
     return {};
 }
 
-/// Turns the picture upright. `orientation`: EXIF's, 1 to 8.
-void apply_orientation(Image& image, int orientation) {
-    if (orientation == 1) return;
-    const std::ptrdiff_t w = image.width, h = image.height;
-    // Where the new top-left pixel comes from, and how far in the old pixels one step right and one step down
-    // go.
-    struct Walk {
-        std::ptrdiff_t start, right, down;
-    };
-    const std::array<Walk, 9> walks{{{0, 1, w},  // 0 is no orientation
-                                     {0, 1, w},
+/// Where the upright picture has what was stored: its top-left pixel, and how far in the upright pixels one
+/// step right and one step down go.
+struct Walk {
+    std::ptrdiff_t start, right, down;
+};
+
+bool turned_on_its_side(int orientation) { return orientation >= 5; }
+
+/// orientation: EXIF's, 1 to 8; w, h: as stored
+Walk upright_walk(int orientation, std::ptrdiff_t w, std::ptrdiff_t h) {
+    const std::array<Walk, 8> walks{{{0, 1, w},
                                      {w - 1, -1, w},
                                      {w * h - 1, -1, -w},
                                      {w * (h - 1), 1, -w},
-                                     {0, w, 1},
-                                     {w * (h - 1), -w, 1},
-                                     {w * h - 1, -w, -1},
-                                     {w - 1, w, -1}}};
-    const Walk walk = walks[std::size_t(orientation)];
-    if (orientation >= 5) {
-        std::swap(image.width, image.height);
-        if (image.resolution) std::swap(image.resolution->x, image.resolution->y);
-    }
-    const std::vector<std::uint8_t> old = std::move(samples_8(image));
-    std::vector<std::uint8_t> turned(old.size());
-    auto out = turned.begin();
-    for (std::ptrdiff_t y = 0; y < image.height; ++y)
-        for (std::ptrdiff_t x = 0; x < image.width; ++x)
-            out = std::copy_n(old.data() + (walk.start + x * walk.right + y * walk.down) * 4, 4, out);
-    image.rgba = std::move(turned);
+                                     {0, h, 1},
+                                     {h - 1, h, -1},
+                                     {w * h - 1, -h, -1},
+                                     {h * (w - 1), -h, 1}}};
+    return walks[std::size_t(orientation - 1)];
 }
+
+class JpegReader final : public RowReader {
+  public:
+    explicit JpegReader(Bytes bytes) {
+        read_header(decoder_, bytes);
+        jpeg_decompress_struct& jpeg = decoder_.jpeg;
+        cmyk_ = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
+        jpeg.out_color_space = cmyk_ ? JCS_CMYK : JCS_EXT_RGBA;
+        // Reads the whole of a progressive file: before the pixels, so that a bad one never takes memory for
+        // both.
+        decoder_.run([&] { jpeg_start_decompress(&jpeg); });
+        exif_ = read_exif(jpeg);  // before the end of decoding takes the markers away
+        walk_ = upright_walk(exif_.orientation, jpeg.output_width, jpeg.output_height);
+    }
+
+    Image blank() override {
+        const jpeg_decompress_struct& jpeg = decoder_.jpeg;
+        Image image = blank_image(jpeg.output_width, jpeg.output_height, 8);
+        image.resolution = jfif_resolution(jpeg);
+        if (!image.resolution) image.resolution = exif_.resolution;
+        if (!cmyk_ && decoder_.icc)
+            image.icc = rgb_profile(std::as_bytes(std::span(decoder_.icc, decoder_.icc_bytes)));
+        if (turned_on_its_side(exif_.orientation)) {
+            std::swap(image.width, image.height);
+            if (image.resolution) std::swap(image.resolution->x, image.resolution->y);
+        }
+        image.opaque = true;
+        return image;
+    }
+
+    int read(std::span<std::byte> pixels) override {
+        jpeg_decompress_struct& jpeg = decoder_.jpeg;
+        const std::size_t row_bytes = std::size_t(jpeg.output_width) * 4, first = jpeg.output_scanline;
+        const std::size_t rows = std::min<std::size_t>(rows_at_once, jpeg.output_height - first);
+        if (exif_.orientation == 1) {
+            decode(pixels.subspan(first * row_bytes, rows * row_bytes));
+        } else {
+            stored_.resize(rows * row_bytes);
+            decode(stored_);
+            turn(first, rows, pixels);
+        }
+        const bool done = jpeg.output_scanline == jpeg.output_height;
+        if (done) decoder_.run([&] { jpeg_finish_decompress(&jpeg); });  // reads up to the end marker
+        if (exif_.orientation == 1) return int(first + rows);
+        return !done ? 0
+                     : int(turned_on_its_side(exif_.orientation) ? jpeg.output_width : jpeg.output_height);
+    }
+
+  private:
+    static constexpr std::size_t rows_at_once = 32;
+
+    /// The next rows, whole ones, as they are stored. rgba: #rows x output_width x 4
+    void decode(std::span<std::byte> rgba) {
+        jpeg_decompress_struct& jpeg = decoder_.jpeg;
+        const std::size_t row_bytes = std::size_t(jpeg.output_width) * 4;
+        auto* const samples = reinterpret_cast<std::uint8_t*>(rgba.data());
+        for (std::size_t at = 0; at < rgba.size(); at += row_bytes) {
+            JSAMPROW row = samples + at;
+            decoder_.run([&] { jpeg_read_scanlines(&jpeg, &row, 1); });
+        }
+        if (cmyk_) cmyk_to_rgba({samples, rgba.size()}, jpeg.saw_Adobe_marker);
+    }
+
+    /// Puts stored_ where it belongs in the upright picture.
+    void turn(std::size_t first, std::size_t rows, std::span<std::byte> upright) const {
+        const std::size_t width = decoder_.jpeg.output_width;
+        for (std::size_t x = 0; x < width; ++x)
+            for (std::size_t y = 0; y < rows; ++y) {
+                const std::ptrdiff_t to =
+                    walk_.start + std::ptrdiff_t(x) * walk_.right + std::ptrdiff_t(first + y) * walk_.down;
+                std::memcpy(&upright[std::size_t(to) * 4], &stored_[(y * width + x) * 4], 4);
+            }
+    }
+
+    Decoder decoder_;
+    bool cmyk_ = false;
+    Exif exif_;
+    Walk walk_{};
+    std::vector<std::byte> stored_;  ///< #rows_at_once x output_width x 4, for a picture that is not upright
+};
 
 }  // namespace
 
-Image decode_jpeg(Bytes bytes) {
-    Decoder decoder;
-    read_header(decoder, bytes);
-    jpeg_decompress_struct& jpeg = decoder.jpeg;
-    const bool cmyk = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
-    jpeg.out_color_space = cmyk ? JCS_CMYK : JCS_EXT_RGBA;
-    // Reads the whole of a progressive file: before the pixels, so that a bad one never takes memory for
-    // both.
-    decoder.run([&] { jpeg_start_decompress(&jpeg); });
+std::unique_ptr<RowReader> read_jpeg_rows(Bytes bytes) { return std::make_unique<JpegReader>(bytes); }
 
-    Image image = blank_image(jpeg.output_width, jpeg.output_height, 8);
-    const Exif exif = read_exif(jpeg);  // before the end of decoding takes the markers away
-    image.resolution = jfif_resolution(jpeg);
-    if (!image.resolution) image.resolution = exif.resolution;
-    read_rows(decoder, samples_8(image));
-    if (cmyk)
-        cmyk_to_rgba(samples_8(image), jpeg.saw_Adobe_marker);
-    else if (decoder.icc)
-        image.icc = rgb_profile(std::as_bytes(std::span(decoder.icc, decoder.icc_bytes)));
-    apply_orientation(image, exif.orientation);
+Image decode_jpeg(Bytes bytes) {
+    JpegReader reader(bytes);
+    Image image = reader.blank();
+    read_all(reader, image);
     return image;
 }
 

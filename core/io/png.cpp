@@ -11,6 +11,7 @@
 #include <new>
 
 #include "io/formats.h"
+#include "io/row_reader.h"
 
 namespace probewarp {
 
@@ -164,26 +165,63 @@ void read_extras(spng_ctx* spng, Image& image) {
         image.resolution = Resolution{phys.ppu_x, phys.ppu_y};
 }
 
+/// Whether the file has no alpha to say.
+bool has_no_alpha(spng_ctx* spng, const spng_ihdr& ihdr) {
+    const bool alpha_channel = (ihdr.color_type & 4u) != 0;
+    spng_trns trns{};
+    return !alpha_channel && spng_get_trns(spng, &trns) == SPNG_ECHUNKAVAIL;
+}
+
+class PngReader final : public RowReader {
+  public:
+    explicit PngReader(Bytes bytes)
+        : found_(survey(bytes)), context_(0), ihdr_(open_stream(context_.spng, found_.parts)) {
+        check_plausible(ihdr_, found_.idat_bytes);
+        if (ihdr_.interlace_method && std::uint64_t(ihdr_.width) * ihdr_.height > 4'000'000)
+            check_rows(survey(bytes).parts);
+    }
+
+    Image blank() override {
+        const bool deep = ihdr_.bit_depth == 16;
+        Image image = blank_image(ihdr_.width, ihdr_.height, deep ? 16 : 8);
+        check(spng_decode_image(context_.spng, nullptr, 0, deep ? SPNG_FMT_RGBA16 : SPNG_FMT_RGBA8,
+                                SPNG_DECODE_TRNS | SPNG_DECODE_PROGRESSIVE));
+        read_extras(context_.spng, image);
+        image.opaque = has_no_alpha(context_.spng, ihdr_);
+        return image;
+    }
+
+    int read(std::span<std::byte> pixels) override {
+        constexpr int rows_at_once = 32;
+        const std::size_t row_bytes = pixels.size() / ihdr_.height;
+        spng_row_info row{};
+        for (int i = 0; i < rows_at_once; ++i) {
+            check(spng_get_row_info(context_.spng, &row));
+            const auto to = pixels.subspan(row.row_num * row_bytes, row_bytes);
+            const int error = spng_decode_row(context_.spng, to.data(), to.size());
+            if (error == SPNG_EOI) {
+                check(spng_decode_chunks(context_.spng));
+                return int(ihdr_.height);
+            }
+            check(error);
+        }
+        return ihdr_.interlace_method ? 0 : int(row.row_num) + 1;
+    }
+
+  private:
+    Survey found_;
+    Context context_;
+    spng_ihdr ihdr_;
+};
+
 }  // namespace
 
-Image decode_png(Bytes bytes) {
-    Survey found = survey(bytes);
-    const Context context(0);
-    const spng_ihdr ihdr = open_stream(context.spng, found.parts);
-    check_plausible(ihdr, found.idat_bytes);
-    if (ihdr.interlace_method && std::uint64_t(ihdr.width) * ihdr.height > 4'000'000)
-        check_rows(survey(bytes).parts);
+std::unique_ptr<RowReader> read_png_rows(Bytes bytes) { return std::make_unique<PngReader>(bytes); }
 
-    const bool deep = ihdr.bit_depth == 16;
-    Image image = blank_image(ihdr.width, ihdr.height, deep ? 16 : 8);
-    std::visit(
-        [&](auto& rgba) {
-            check(spng_decode_image(context.spng, rgba.data(), rgba.size() * sizeof rgba[0],
-                                    deep ? SPNG_FMT_RGBA16 : SPNG_FMT_RGBA8, SPNG_DECODE_TRNS));
-        },
-        image.rgba);
-    check(spng_decode_chunks(context.spng));
-    read_extras(context.spng, image);
+Image decode_png(Bytes bytes) {
+    PngReader reader(bytes);
+    Image image = reader.blank();
+    read_all(reader, image);
     return image;
 }
 

@@ -323,7 +323,14 @@ PaintPtr read_paint(Archive& archive, const std::optional<PaintMember>& member, 
     }
 }
 
-Document decode(std::vector<std::byte> bytes) {
+/// What a project holds: the document without its picture, and that one's file.
+struct Opened {
+    Document document;
+    std::vector<std::byte> image;
+    std::string image_file, image_name;
+};
+
+Opened open_project(std::vector<std::byte> bytes) {
     Archive archive = open_archive(bytes);
     bytes = {};  // the picture's pixels need the room
     Parsed parsed = parse_project(archive.bytes_of("project.json"));
@@ -338,11 +345,17 @@ Document decode(std::vector<std::byte> bytes) {
             throw Error(fmt::format(
                 "has a member {} that this version does not know; expected a project of this version",
                 member.name));
-    Picture picture = decode_picture(std::move(image), parsed.image_file);
-    picture.name = parsed.image_name;
-    parsed.document.picture = std::make_shared<Picture>(std::move(picture));
-    check_size(parsed.document);
-    return std::move(parsed.document);
+    return {std::move(parsed.document), std::move(image), parsed.image_file, parsed.image_name};
+}
+
+/// Runs `step`, whose errors get the project's name; names inside may hold anything.
+template <class Step>
+auto called(const std::string& name, const Step& step) {
+    try {
+        return step();
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", printable(name), printable(error.what())));
+    }
 }
 
 }  // namespace
@@ -386,22 +399,24 @@ std::vector<std::byte> encode_project(const Document& document) {
     return write_zip(members);
 }
 
-Document decode_project(std::vector<std::byte> bytes, const std::string& name) {
-    try {
-        return decode(std::move(bytes));
-    } catch (const Error& error) {
-        throw Error(fmt::format("{}: {}", printable(name),
-                                printable(error.what())));  // names inside may hold anything
-    }
+Document decode_project(std::vector<std::byte> bytes, const std::string& name, Pixels pixels) {
+    Opened opened = called(name, [&] { return open_project(std::move(bytes)); });
+    Document& document = opened.document;
+    Picture picture =
+        decode_picture(std::move(opened.image), fmt::format("{}: {}", name, opened.image_file), pixels);
+    picture.name = opened.image_name;
+    document.picture = std::make_shared<Picture>(std::move(picture));
+    called(name, [&] { check_size(document); });
+    return std::move(document);
 }
 
 bool is_project(std::span<const std::byte> bytes) { return is_zip(bytes); }
 
-Document read_document(const std::filesystem::path& path) {
+Document read_document(const std::filesystem::path& path, Pixels pixels) {
     std::vector<std::byte> bytes = read_file(path);
-    if (is_project(bytes)) return decode_project(std::move(bytes), path.string());
+    if (is_project(bytes)) return decode_project(std::move(bytes), path.string(), pixels);
     Document document;
-    Picture picture = decode_picture(std::move(bytes), path.string());
+    Picture picture = decode_picture(std::move(bytes), path.string(), pixels);
     picture.name = one_line(path.filename().string());
     document.picture = std::make_shared<Picture>(std::move(picture));
     return document;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/image_file.h"
 #include "model/document.h"
 #include "model/error.h"
 
@@ -22,10 +23,10 @@ std::vector<std::byte> encode_project(const Document& document);
 
 /// Throws Error: "NAME: what is wrong; what is expected". Fields that this version does not know are refused,
 /// so that saving again never loses what a later version wrote.
-Document decode_project(std::vector<std::byte> bytes, const std::string& name);
+Document decode_project(std::vector<std::byte> bytes, const std::string& name, Pixels pixels = Pixels::whole);
 
 /// A document from a file: a project as it was saved, or a picture without probes.
-Document read_document(const std::filesystem::path& path);
+Document read_document(const std::filesystem::path& path, Pixels pixels = Pixels::whole);
 
 /// Whether the bytes are meant as a project rather than a picture.
 bool is_project(std::span<const std::byte> bytes);

@@ -62,7 +62,7 @@ bool has_alpha(const Image& image) {
             },
             std::logical_and<>());
     };
-    return !std::visit(opaque, image.rgba);
+    return !image.opaque && !std::visit(opaque, image.rgba);
 }
 
 }  // namespace probewarp

@@ -34,6 +34,7 @@ struct Image {
     std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>> rgba;
     std::vector<std::byte> icc;            ///< the ICC profile of the colours; empty: sRGB
     std::optional<Resolution> resolution;  ///< where the file gave one
+    bool opaque = false;                   ///< every alpha is sure to be full; else one has to look
 
     int bits() const { return rgba.index() == 0 ? 8 : 16; }
 };
@@ -51,13 +52,34 @@ bool is_opaque(std::span<const std::uint16_t> rgba);
 /// Whether any pixel is not fully opaque.
 bool has_alpha(const Image& image);
 
+/// The rows of a picture that another thread is still decoding, from the top.
+class ArrivingRows {
+  public:
+    virtual ~ArrivingRows() = default;
+    /// Comes back when so many are there. Throws Error where they never will be.
+    virtual void wait(int rows) const = 0;
+
+    struct Times {
+        double decoding, waiting;  ///< seconds
+    };
+    /// So far.
+    virtual Times times() const = 0;
+};
+
 /// A picture as it was opened: what a project stores, and what the renderer shows.
 struct Picture {
     Image image;
     std::string name;                 ///< the file's name without its folder
     std::string format;               ///< the reader's row: "png", "jpeg", ...
     std::vector<std::byte> original;  ///< the file's bytes, for the project
+    /// Null: all pixels are there. Else image.opaque holds, and no row may be looked at before it is there.
+    std::shared_ptr<const ArrivingRows> arriving;
 };
+
+/// Comes back when so many rows, from the top, are there. Throws Error where they never will be.
+inline void wait_for_rows(const Picture& picture, int rows) {
+    if (picture.arriving) picture.arriving->wait(rows);
+}
 
 using PicturePtr = std::shared_ptr<const Picture>;
 

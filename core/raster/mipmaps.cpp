@@ -7,7 +7,6 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <type_traits>
 
 namespace probewarp {
 
@@ -77,33 +76,58 @@ void halve_row(const Sample* from, Extent size, int y, Sample* to) {
     }
 }
 
-Image half_size(const Image& image) {
-    const Extent size{image.width, image.height};
-    Image next;
-    next.width = half(size).width;
-    next.height = half(size).height;
-    const std::size_t row = std::size_t(next.width) * 4;
+/// How many rows of half(size) follow from the first `rows` rows.
+int rows_halved(int rows, Extent size) { return rows == size.height ? half(size).height : rows / 2; }
+
+/// Rows of `to` from `first` to before `end`.
+void halve_rows(const Image& from, Image& to, int first, int end) {
+    const Extent size{from.width, from.height};
+    const std::size_t row = std::size_t(to.width) * 4;
     std::visit(
-        [&](const auto& from) {
-            auto to = std::remove_cvref_t<decltype(from)>(row * std::size_t(next.height));
+        [&]<class Sample>(const std::vector<Sample>& above) {
+            auto& below = std::get<std::vector<Sample>>(to.rgba);
             using Range = oneapi::tbb::blocked_range<int>;
-            oneapi::tbb::parallel_for(Range(0, next.height), [&](const Range& rows) {
+            oneapi::tbb::parallel_for(Range(first, end), [&](const Range& rows) {
                 for (int y = rows.begin(); y < rows.end(); ++y)
-                    halve_row(from.data(), size, y, to.data() + std::size_t(y) * row);
+                    halve_row(above.data(), size, y, below.data() + std::size_t(y) * row);
             });
-            next.rgba = std::move(to);
         },
-        image.rgba);
-    return next;
+        from.rgba);
 }
 
 }  // namespace
 
-std::vector<Image> smaller_levels(const Image& image, int most) {
+std::vector<Image> room_for_levels(const Image& image, int most) {
     std::vector<Image> levels;
     const int all = int(std::bit_width(unsigned(std::max(image.width, image.height)))) - 1;
-    for (int i = 0; i < std::min(most, all); ++i)
-        levels.push_back(half_size(levels.empty() ? image : levels.back()));
+    Extent size{image.width, image.height};
+    for (int i = 0; i < std::min(most, all); ++i) {
+        size = half(size);
+        Image& level = levels.emplace_back();
+        level.width = size.width;
+        level.height = size.height;
+        const std::size_t samples = std::size_t(size.width) * std::size_t(size.height) * 4;
+        std::visit(
+            [&]<class Sample>(const std::vector<Sample>&) { level.rgba = std::vector<Sample>(samples); },
+            image.rgba);
+    }
+    return levels;
+}
+
+void fill_levels(const Image& image, std::span<Image> levels, int first, int end) {
+    const Image* from = &image;
+    for (Image& level : levels) {
+        const Extent size{from->width, from->height};
+        first = rows_halved(first, size);
+        end = rows_halved(end, size);
+        halve_rows(*from, level, first, end);
+        from = &level;
+    }
+}
+
+std::vector<Image> smaller_levels(const Image& image, int most) {
+    std::vector<Image> levels = room_for_levels(image, most);
+    fill_levels(image, levels, 0, image.height);
     return levels;
 }
 

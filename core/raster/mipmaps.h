@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "model/image.h"
@@ -16,7 +17,14 @@ struct Extent {
 /// Of the next mipmap.
 Extent half(Extent of);
 
-/// Those from half the image's size on, each pixel the alpha-weighted mean of four; at most so many.
+/// Room for those from half the image's size on; at most so many.
+std::vector<Image> room_for_levels(const Image& image, int most = std::numeric_limits<int>::max());
+
+/// Works out what of the levels follows from the image's rows from `first` to before `end`, those before
+/// having been there: each pixel is the alpha-weighted mean of four.
+void fill_levels(const Image& image, std::span<Image> levels, int first, int end);
+
+/// Both at once, of the whole image.
 std::vector<Image> smaller_levels(const Image& image, int most = std::numeric_limits<int>::max());
 
 }  // namespace probewarp

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 
@@ -70,30 +71,59 @@ constexpr int bin_sample_rows = 32;
 }  // namespace
 
 Rasterizer::Rasterizer(const Deformation& deformation, const View& view, const FileStyle& style)
-    : samples_view_(of_samples(view, style.samples)),
+    : picture_(*deformation.source.picture),
+      samples_view_(of_samples(view, style.samples)),
       style_(style),
+      opaque_(!has_alpha(picture_.image)),
       bin_rows_(std::max(1, bin_sample_rows / style.samples)) {
     assert(!style.overlay);
-    const Image& picture = deformation.source.picture->image;
-    opaque_ = !has_alpha(picture);
+    const Image& image = picture_.image;
     if (deformation.moved) {
         mesh_ = {mesh_of(deformation).rest, deformation.now, mesh_of(deformation).triangles};
     } else {  // all of the picture as it is, with the cells that the mesh leaves out
         static constexpr std::array<std::uint32_t, 6> two_triangles{0, 1, 2, 2, 1, 3};
-        const float right = float(picture.width), bottom = float(picture.height);
+        const float right = float(image.width), bottom = float(image.height);
         corners_ = {{{0, 0}, {right, 0}, {0, bottom}, {right, bottom}}};
         mesh_ = {corners_, corners_, two_triangles};
     }
-    images_ = smaller_levels(picture, wanted_levels(mesh_, samples_view_));
-    for (Image& image : images_)
-        if (is_thin(image)) image = thickened(image);
-    if (is_thin(picture)) images_.insert(images_.begin(), thickened(picture));
-    const auto add_level = [&](const Image& image) {
-        levels_.push_back({pixel_bytes(image).data(), image.width, image.height});
-    };
-    if (!is_thin(picture)) add_level(picture);
-    for (const Image& image : images_) add_level(image);
     bins_ = bin_triangles(mesh_, samples_view_, bin_rows_ * style.samples);
+    images_ = room_for_levels(image, wanted_levels(mesh_, samples_view_));
+    if (!picture_.arriving) fetch(image.height);
+}
+
+/// Waits for so many of the picture's rows, and works out what of the mipmaps follows from them.
+void Rasterizer::fetch(int picture_rows) {
+    const Image& image = picture_.image;
+    if (picture_rows <= fetched_) return;
+    wait_for_rows(picture_, picture_rows);
+    fill_levels(image, images_, fetched_, picture_rows);
+    fetched_ = picture_rows;
+    if (fetched_ == image.height) {
+        for (Image& mipmap : images_)
+            if (is_thin(mipmap)) mipmap = thickened(mipmap);
+        if (is_thin(image)) images_.insert(images_.begin(), thickened(image));
+    }
+    levels_.clear();
+    const auto add_level = [&](const Image& level) {
+        levels_.push_back({pixel_bytes(level).data(), level.width, level.height});
+    };
+    if (!is_thin(image)) add_level(image);
+    for (const Image& mipmap : images_) add_level(mipmap);
+}
+
+/// How many of the picture's rows, from the top, show in these rows of the view, mipmaps included.
+int Rasterizer::rows_shown(const Rows& rows) const {
+    const Image& image = picture_.image;
+    // A thin mipmap, of which a pixel is more than half of a side, is there once it is whole.
+    const double widest = std::min(image.width, image.height) / 4.0;
+    double lowest = 1;
+    for (int bin = rows.first / bin_rows_; bin * bin_rows_ < rows.end; ++bin)
+        lowest =
+            std::max(lowest, lowest_lookup(mesh_, bins_.bin(std::size_t(bin)), samples_view_,
+                                           {rows.first * style_.samples, rows.end * style_.samples}, widest));
+    // Whole pixels of the smallest mipmap.
+    const double step = double(std::size_t{1} << images_.size());
+    return int(std::min(std::ceil(lowest / step) * step, double(image.height)));
 }
 
 /// At one sample a pixel nothing has to be blended. rows: of one bin; pixels: #rows x width
@@ -136,6 +166,7 @@ void Rasterizer::blend(const Rows& rows, std::span<Pixel<Sample>> pixels) const 
 
 void Rasterizer::draw_rows(int first_row, Image& band) {
     assert(band.width * style_.samples == samples_view_.width);
+    if (fetched_ < picture_.image.height) fetch(rows_shown({first_row, first_row + band.height}));
     const auto draw = [&]<class Sample>(std::vector<Sample>& rgba) {
         const std::span pixels(reinterpret_cast<Pixel<Sample>*>(rgba.data()), rgba.size() / 4);
         const std::size_t width = std::size_t(band.width);

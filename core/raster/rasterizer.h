@@ -25,11 +25,14 @@ class Rasterizer final : public PictureDrawer {
     void draw_rows(int first_row, Image& band) override;
 
   private:
+    void fetch(int picture_rows);
+    int rows_shown(const Rows& rows) const;
     template <class Sample>
     void draw_opaque(const Rows& rows, std::span<Pixel<Sample>> pixels) const;
     template <class Sample>
     void blend(const Rows& rows, std::span<Pixel<Sample>> pixels) const;
 
+    const Picture& picture_;
     View samples_view_;  ///< of the samples
     FileStyle style_;
     bool opaque_;
@@ -37,7 +40,8 @@ class Rasterizer final : public PictureDrawer {
     DeformedMesh mesh_;
     std::vector<Image> images_;  ///< the mipmaps, and the picture where it is one pixel wide or high
     std::vector<Level> levels_;
-    int bin_rows_;  ///< what one thread draws at a time: rows
+    int fetched_ = 0;  ///< rows of the picture that are there, with their mipmaps
+    int bin_rows_;     ///< what one thread draws at a time: rows
     TriangleBins bins_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace probewarp {
 
@@ -73,6 +74,32 @@ std::vector<std::vector<PixelSpan>> scan_convert(const DeformedMesh& mesh,
         });
     }
     return spans;
+}
+
+double lowest_lookup(const DeformedMesh& mesh, std::span<const std::uint32_t> triangles, const View& view,
+                     const Rows& rows, double widest) {
+    double lowest = 0;
+    for (const std::uint32_t triangle : triangles) {
+        const Corners corners = corners_of(mesh, triangle);
+        const Lookup lookup = lookup_of(corners, view);
+        const double footprint = std::sqrt(footprint_squared(lookup));
+        if (!std::isfinite(footprint)) continue;
+        if (footprint > widest) return std::numeric_limits<double>::infinity();
+        // Its highest place on the target, and where that box, cut to the rows, reaches down at rest.
+        const auto x = [&](std::size_t k) { return (corners.now[k].x - view.origin.x) * view.scale.x; };
+        const auto y = [&](std::size_t k) { return (corners.now[k].y - view.origin.y) * view.scale.y; };
+        const auto [left, right] = std::minmax({x(0), x(1), x(2)});
+        const auto [top, bottom] = std::minmax({y(0), y(1), y(2)});
+        const double from = std::clamp(left, 0.0, double(view.width)),
+                     to = std::clamp(right, 0.0, double(view.width));
+        const double first = std::max(top, double(rows.first)), end = std::min(bottom, double(rows.end));
+        const double in_box = lookup.at.y + std::max(lookup.across.y * from, lookup.across.y * to) +
+                              std::max(lookup.down.y * first, lookup.down.y * end);
+        const double in_triangle = std::max({corners.rest[0].y, corners.rest[1].y, corners.rest[2].y});
+        // Corners are put on a grid, and a mipmap's pixel is up to twice the footprint.
+        lowest = std::max(lowest, std::min(in_box, in_triangle) + 4 * footprint + 2);
+    }
+    return lowest;
 }
 
 }  // namespace probewarp

@@ -28,4 +28,9 @@ std::vector<std::vector<PixelSpan>> scan_convert(const DeformedMesh& mesh,
                                                  std::span<const std::uint32_t> triangles, const View& view,
                                                  const Rows& rows, int last_level);
 
+/// How far down the picture at rest scan_convert's pixels look, mipmaps included: y, image pixels; 0 where
+/// there are none. May be more, never less; infinite where a footprint is above `widest`.
+double lowest_lookup(const DeformedMesh& mesh, std::span<const std::uint32_t> triangles, const View& view,
+                     const Rows& rows, double widest);
+
 }  // namespace probewarp

@@ -1,6 +1,6 @@
 // Fuzzes the reading of pictures in all formats. The first byte says how: bit 0 names the file as a TGA
 // (which has no signature), bit 1 puts a PNG's checksums right, without which hardly any change would get
-// past them.
+// past them, and bit 2 has the rows decoded beside.
 #include <zlib.h>
 
 #include <cstdlib>
@@ -55,7 +55,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<std::byte> bytes(first + 1, first + size);
     if (data[0] & 2) repair_png(bytes);
     try {
-        check(probewarp::decode_picture(std::move(bytes), data[0] & 1 ? "fuzz.tga" : "fuzz"));
+        const auto pixels = data[0] & 4 ? probewarp::Pixels::arriving : probewarp::Pixels::whole;
+        const auto picture =
+            probewarp::decode_picture(std::move(bytes), data[0] & 1 ? "fuzz.tga" : "fuzz", pixels);
+        probewarp::wait_for_rows(picture, picture.image.height);
+        check(picture);
     } catch (const probewarp::Error& error) {
         check(error);
     }

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 
 #include "exporting/export.h"
@@ -180,6 +182,55 @@ TEST(Rasterizer, LevelsThatAreWantedAreThere) {
         still.probes.clear();
         expect_as_the_driver(still, scale);
     }
+}
+
+/// Rows that come when they are waited for, and not before.
+struct RowsOnDemand final : ArrivingRows {
+    const Image* all;                  ///< of the picture
+    mutable Image* arrived = nullptr;  ///< its other image, of which only these rows are there
+    mutable int rows = 0;
+
+    explicit RowsOnDemand(const Image& of) : all(&of) {}
+    void wait(int wanted) const override {
+        rows = std::max(rows, wanted);
+        const auto from = pixel_bytes(*all).first(std::size_t(rows) * std::size_t(all->width) * 4);
+        std::memcpy(std::get<0>(arrived->rgba).data(), from.data(), from.size());
+    }
+    Times times() const override { return {}; }
+};
+
+TEST(Rasterizer, WaitsForTheRowsThatItShowsAndNoOthers) {
+    const PicturePtr whole = noise<std::uint8_t>(600, 3000);
+    for (const double scale : {2.0, 1.0, 0.9, 0.3})
+        for (const double angle : {0.0, 0.3, -2.0})
+            for (const int samples : {1, 2}) {
+                Document document = pulled(whole, angle);
+                Deformation deformation;
+                update(deformation, document);
+                const View view{{}, glm::dvec2(scale), int(600 * scale), int(3000 * scale)};
+                const FileStyle style{samples, {}, false};
+                Rasterizer at_once(deformation, view, style);
+
+                auto rows = std::make_shared<RowsOnDemand>(whole->image);
+                auto picture = std::make_shared<Picture>(*whole);
+                picture->image.opaque = true;
+                std::ranges::fill(std::get<0>(picture->image.rgba), std::uint8_t{0});
+                picture->arriving = rows;
+                rows->arrived = &picture->image;
+                Deformation arriving = deformation;
+                arriving.source.picture = picture;
+                Rasterizer bit_by_bit(arriving, view, style);
+                EXPECT_EQ(rows->rows, 0) << "nothing was drawn yet";
+
+                Image first = blank(whole->image, {{}, view.scale, view.width, 256});
+                bit_by_bit.draw_rows(0, first);
+                if (angle == 0) {  // else the picture stands on its head here and there
+                    EXPECT_LT(rows->rows, 256 / scale + 1500) << scale << " " << angle;
+                }
+                EXPECT_EQ(exported(bit_by_bit, arriving, view, style).rgba,
+                          exported(at_once, deformation, view, style).rgba)
+                    << scale << " " << angle << " " << samples;
+            }
 }
 
 TEST(Triangles, WantNoMoreLevelsThanTheyShow) {

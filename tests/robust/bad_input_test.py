@@ -145,6 +145,16 @@ class BadFiles(unittest.TestCase):
             cut += len(lengths)
         print(f"  {cut} truncated files", flush=True)
 
+    def test_truncated_where_nothing_shows(self):
+        """The picture is drawn while it is decoded, and here its lower half has left the frame."""
+        data = files.png(200, 2000, colour=2)
+        pulled = ["--probe", "100,0:100,1500"]
+        self.refused("tall.png", data[: len(data) * 4 // 5], "is truncated", options=pulled)
+        self.refused("tall.png", data[:-20], "is truncated", options=pulled)
+        broken = bytearray(data)
+        broken[len(data) * 4 // 5] ^= 1
+        self.refused("tall.png", bytes(broken), "is damaged", options=pulled)
+
     def test_empty(self):
         for ending in "png jpg bmp tga gif psd ppm probewarp xyz".split():
             self.refused("empty." + ending, b"", "is empty")

@@ -101,10 +101,14 @@ def one_line(err):
 
 
 def files_in(folder):
-    """Every file below the folder, with what shows that it was touched."""
+    """Every file below the folder, with what shows that it was touched. A folder's own time does not count: a picture
+    is written beside its place while it is decoded, and taken away again where that fails."""
     found = {}
     for place, folders, files in os.walk(folder):
-        for name in folders + files:
+        for name in folders:
+            status = os.lstat(os.path.join(place, name))
+            found[os.path.relpath(os.path.join(place, name), folder)] = (status.st_mode, status.st_ino)
+        for name in files:
             path = os.path.join(place, name)
             status = os.lstat(path)
             found[os.path.relpath(path, folder)] = (status.st_mode, status.st_ino, status.st_size, status.st_mtime_ns)

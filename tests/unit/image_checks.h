@@ -18,17 +18,38 @@ namespace probewarp::testing {
 
 using Rgba = std::array<int, 4>;
 
-inline std::string error_of(const File& file, const std::string& name) {
-    try {
-        decode_picture(file, name);
-        return "";
-    } catch (const Error& error) {
-        return error.what();
-    }
+/// Of a file whose rows came one after the other.
+inline Image decode_arriving(const File& file, const std::string& name) {
+    const Picture picture = decode_picture(file, name, Pixels::arriving);
+    wait_for_rows(picture, picture.image.height);
+    return picture.image;
 }
 
+/// The same whichever way it is decoded.
+inline std::string error_of(const File& file, const std::string& name) {
+    const auto error_by = [&](const auto& decode) -> std::string {
+        try {
+            decode();
+            return "";
+        } catch (const Error& error) {
+            return error.what();
+        }
+    };
+    const std::string error = error_by([&] { decode_picture(file, name); });
+    EXPECT_EQ(error_by([&] { decode_arriving(file, name); }), error);
+    return error;
+}
+
+/// The same whichever way.
 inline Image decode(const File& file, const std::string& name = "picture") {
-    return decode_picture(file, name).image;
+    Image image = decode_picture(file, name).image;
+    const Image arriving = decode_arriving(file, name);
+    EXPECT_EQ(arriving.width, image.width);
+    EXPECT_EQ(arriving.height, image.height);
+    EXPECT_EQ(arriving.rgba, image.rgba);
+    EXPECT_EQ(arriving.icc, image.icc);
+    EXPECT_EQ(arriving.resolution, image.resolution);
+    return image;
 }
 
 inline File encode(const Image& image, std::string_view format, const EncodeOptions& options = {}) {
