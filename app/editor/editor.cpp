@@ -34,16 +34,40 @@ void start(Editor& editor, Document document, std::filesystem::path path, bool s
     editor.fit_wanted = true;
 }
 
+namespace {
+
+/// Whether `next` is closer to the document's own deformation.
+bool is_nearer(const Deformation& next, const Deformation& present, const Document& document) {
+    if (!fits(next.binding.get(), document)) return false;
+    if (!fits(present.binding.get(), document)) return true;
+    if (next.binding != present.binding)
+        return is_bound(next.binding.get(), document) || !is_bound(present.binding.get(), document);
+    return refining_work(next, document) < refining_work(present, document);
+}
+
+void take_next(Editor& editor) {
+    std::optional<Deformation>& next = editor.next_deformation;
+    const bool strokes = editor.gesture && editor.gesture->stroke;
+    // A stroke keeps the mesh that it began on.
+    if (!next || (strokes && next->binding != editor.deformation.binding)) return;
+    if (is_nearer(*next, editor.deformation, editor.document)) replace(editor.deformation, std::move(*next));
+    next.reset();
+}
+
+}  // namespace
+
 void refresh(Editor& editor) {
     if (!has_picture(editor) || defers_deformation(editor)) return;
     auto& deformation = editor.deformation;
     const Pace pace = editor.gesture ? Pace::dragging : Pace::settled;
-    if (!editor.binds_elsewhere) return update(deformation, editor.document, pace);
-    const bool strokes =
-        editor.gesture && editor.gesture->stroke;  // a stroke keeps the mesh that it began on
-    auto binding = strokes ? nullptr : std::exchange(editor.next_binding, nullptr);
-    if (!fits(binding.get(), editor.document)) binding = deformation.binding;
-    if (fits(binding.get(), editor.document)) pose(deformation, editor.document, std::move(binding), pace);
+    if (!editor.deforms_elsewhere) return update(deformation, editor.document, pace);
+    take_next(editor);
+    if (!fits(deformation.binding.get(), editor.document)) return;
+    if (refining_work(deformation, editor.document) <= refined_at_once)
+        return pose(deformation, editor.document, deformation.binding, pace);
+    // The weights are not there yet: those that are go on deforming.
+    if (const auto shown = in_pose_of(deformation.source, editor.document))
+        pose(deformation, *shown, deformation.binding, pace);
 }
 
 bool is_deformed(const Editor& editor) {

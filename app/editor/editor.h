@@ -121,9 +121,10 @@ struct Editor {
 
     DeformBy deform_by = DeformBy::automatic;
 
-    /// The window works bindings out beside itself; without one refresh does, at once.
-    bool binds_elsewhere = false;
-    std::shared_ptr<const Binding> next_binding;  ///< the newest from there; taken by the next refresh
+    /// The window works bindings and large tables of weights out beside itself; without one refresh does, at
+    /// once.
+    bool deforms_elsewhere = false;
+    std::optional<Deformation> next_deformation;  ///< the newest from there; taken by the next refresh
 
     std::vector<Request> requests;  ///< taken and emptied by the window
     std::vector<Task> tasks;        ///< likewise
@@ -138,11 +139,14 @@ Probe* selected_probe(Editor& editor);
 /// Begins with another document: opened from `path` (a project) or from nothing.
 void start(Editor& editor, Document document, std::filesystem::path path, bool saved);
 
+/// Weights that refresh settles by itself where there is a window: some 20 ms.
+inline constexpr std::size_t refined_at_once = std::size_t{1} << 22;
+
 /// Brings the deformation up to date with the document, as far as that goes without the window's help. Called
 /// before drawing.
 void refresh(Editor& editor);
 
-/// Whether the deformation is the document's own, rather than one that waits for its binding.
+/// Whether the deformation is the document's own, rather than one that waits for its weights.
 bool is_deformed(const Editor& editor);
 
 /// Makes `document` a step of the history, unless nothing changed. Ends a gesture.

@@ -11,8 +11,8 @@
 
 #include "editor/editor.h"
 #include "exporting/picture_file.h"
-#include "gui/binding_job.h"
 #include "gui/deform_choice.h"
+#include "gui/deform_job.h"
 #include "gui/file_dialog.h"
 #include "gui/fonts.h"
 #include "gui/jobs.h"
@@ -84,11 +84,11 @@ struct App {
     WeightsKey overlaid, shaded;  ///< what the renderer's overlay and its shader have; empty: none
     double deform_milliseconds = 0;
     DeformMeasurement deform_measurement;
-    std::unique_ptr<BindingJob> binding_job;                  ///< null while none is under way
-    std::vector<std::unique_ptr<BindingJob>> abandoned_jobs;  ///< given up, and not yet at their end
+    std::unique_ptr<DeformJob> deform_job;                   ///< null while none is under way
+    std::vector<std::unique_ptr<DeformJob>> abandoned_jobs;  ///< given up, and not yet at their end
     std::shared_ptr<const Binding> last_binding;  ///< whatever document it is of: the next one starts from it
-    std::optional<Document> unbound;              ///< the document whose binding failed
-    std::string unbound_reason;
+    std::optional<Document> undeformable;         ///< the document whose weights could not be worked out
+    std::string undeformable_reason;
     std::optional<MeshPoint> under;  ///< of the deformed mesh under the pointer
     std::vector<double> shares;      ///< #probes: there; empty beside the picture
 

@@ -7,7 +7,7 @@
 namespace probewarp {
 
 bool wants_trial(const App& app) {
-    const bool still = app.frames_wanted <= 0 && !app.editor.gesture && !app.binding_job && !is_busy(app);
+    const bool still = app.frames_wanted <= 0 && !app.editor.gesture && !app.deform_job && !is_busy(app);
     return !app.deform_measurement.over && app.shown.picture && still;
 }
 

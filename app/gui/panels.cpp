@@ -187,7 +187,7 @@ std::string facts(const App& app) {
     std::string text =
         fmt::format("{} × {} · {} vertices · {} · {}", image.width, image.height,
                     grouped(editor.deformation.now.size()), deform_facts(app), app.renderer_label);
-    if (app.binding_job && ImGui::GetTime() - app.binding_job->since > 0.1)
+    if (app.deform_job && ImGui::GetTime() - app.deform_job->since > 0.1)
         text = "working out the weights… · " + text;
     // Nobody counts what the shader could not blend.
     if (editor.deformation.cancelled > 0 && !is_shaded(app))

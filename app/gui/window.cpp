@@ -400,7 +400,7 @@ void wait_for_events(App& app) {
     const double message = next_message_change(app);
     const double caret = ImGui::GetIO().WantTextInput ? 0.3 : -1;  // a text field's caret blinks
     // While weights are being worked out the status bar tells so; and what was given up is seen to end.
-    if (app.binding_job || !app.abandoned_jobs.empty()) {
+    if (app.deform_job || !app.abandoned_jobs.empty()) {
         glfwWaitEventsTimeout(0.1);
         return app.wake();
     }
@@ -438,7 +438,7 @@ int run_window(const std::string& path, DeformBy deform_by) {
     const Glfw glfw;
     App app;
     app.scale = wanted_scale(glfwGetPrimaryMonitor());
-    app.editor.binds_elsewhere = true;
+    app.editor.deforms_elsewhere = true;
     app.editor.deform_by = deform_by;
     // The driver takes most of the time until the first frame: fonts and file are read meanwhile.
     Toolkit toolkit(app.scale);

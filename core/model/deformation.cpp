@@ -13,7 +13,7 @@ namespace probewarp {
 const Mesh& mesh_of(const Deformation& deformation) { return *deformation.binding->mesh; }
 
 std::span<const float> weights_of(const Deformation& deformation) {
-    return deformation.refined.empty() ? deformation.binding->automatic : deformation.refined;
+    return deformation.refined ? *deformation.refined : deformation.binding->automatic;
 }
 
 namespace {
@@ -54,27 +54,46 @@ std::size_t deform_run(Deformation& d, const Document& document, VertexRun run) 
     return 0;
 }
 
-/// Works out the weights of some vertices anew, and where these go; the others must be where they belong.
-void refine_runs(Deformation& d, const Document& document, std::span<const VertexRun> runs) {
-    const std::size_t probes = document.probes.size();
-    for (const VertexRun run : runs) {
-        d.cancelled -= deform_run(d, document, run);
-        const auto weights = std::span(d.refined).subspan(run.first * probes, run.count * probes);
-        settle_run(document, *d.binding, run, weights);
-        put(d.quick.tiles, run, weights);
-        d.cancelled += deform_run(d, document, run);
+/// Which vertices' weights have to be worked out anew.
+struct Refining {
+    bool all = false;
+    std::vector<VertexRun> runs;  ///< where not all
+};
+
+/// rebound: whether the deformation has another binding than that of its source
+Refining refining_for(const Deformation& d, const Document& document, bool rebound) {
+    const bool refined = is_refined(document);
+    if (rebound || refined != bool(d.refined)) {
+        // The first dab leaves most vertices with the automatic weights.
+        const bool in_runs = !rebound && refined && differ_by_vertex(d.source, document);
+        if (in_runs) return {false, changed_runs(d.source, document, mesh_of(d))};
+        return {refined || d.refined, {}};
     }
+    if (!refined) return {};
+    if (differ_by_vertex(d.source, document)) return {false, changed_runs(d.source, document, mesh_of(d))};
+    const bool same = d.source.weights.most == document.weights.most &&
+                      d.source.stiffness == document.stiffness && same_locks(d.source, document);
+    return {!same || !repainted(d.source, document, mesh_of(d)).empty(), {}};
 }
 
-/// Works all weights out, as far as they may differ from those of `d.source`.
-void refine_all(Deformation& d, const Document& document, bool rebound) {
-    const bool same = !rebound && d.source.weights.most == document.weights.most &&
-                      d.source.stiffness == document.stiffness && same_locks(d.source, document);
-    const bool refined = is_refined(document);
-    if (!rebound && !refined && d.refined.empty()) return;
-    if (refined && same && !d.refined.empty() && repainted(d.source, document, mesh_of(d)).empty()) return;
-    d.refined = refined ? refined_weights(document, *d.binding) : std::vector<float>();
-    d.quick.tiles.vertices = 0;  // their memory will be used again
+/// Works the weights of one run out.
+void refine_run(Deformation& d, const Document& document, VertexRun run) {
+    const std::size_t probes = document.probes.size();
+    const auto weights = std::span(*d.refined).subspan(run.first * probes, run.count * probes);
+    settle_run(document, *d.binding, run, weights);
+    put(d.quick.tiles, run, weights);
+}
+
+/// Works all weights out.
+void refine_all(Deformation& d, const Document& document) {
+    d.refined = nullptr;  // before the next are made: they are large
+    if (is_refined(document))
+        d.refined = std::make_shared<std::vector<float>>(refined_weights(document, *d.binding));
+}
+
+/// Lets go of the tiles, whose memory will be used again.
+void untile(Deformation& d) {
+    d.quick.tiles.vertices = 0;
     d.quick.others = {};
 }
 
@@ -121,6 +140,20 @@ void deform_all(Deformation& d, const Document& document, std::optional<std::siz
     d.cancelled = deform_dlb_dragged(d.quick.tiles, others, mesh_of(d).rest, pose, d.now);
 }
 
+/// Works the weights of some vertices out, and where the pose is the same, where these go; the others must be
+/// where they belong then.
+void refine_runs(Deformation& d, const Document& document, std::span<const VertexRun> runs, bool same_pose) {
+    if (runs.empty()) return;
+    d.quick.others = {};
+    if (!d.refined || d.refined.use_count() > 1)
+        d.refined = std::make_shared<std::vector<float>>(weights_of(d).begin(), weights_of(d).end());
+    for (const VertexRun run : runs) {
+        if (same_pose) d.cancelled -= deform_run(d, document, run);
+        refine_run(d, document, run);
+        if (same_pose) d.cancelled += deform_run(d, document, run);
+    }
+}
+
 }  // namespace
 
 WeightsKey weights_key(const Deformation& deformation) {
@@ -139,7 +172,6 @@ void pose(Deformation& d, const Document& document, std::shared_ptr<const Bindin
     auto motions = motions_of(document);
     const bool same_blend = !rebound && d.source.blend == document.blend;
     const bool same_pose = same_blend && !d.dragged && d.motions == motions;
-    const bool in_runs = same_pose && is_refined(document) && differ_by_vertex(d.source, document);
     std::optional<std::size_t> dragged;
     if (dragging && same_blend) dragged = only_moved(d.motions, motions);
     if (!d.binding || d.binding->mesh != binding->mesh) ++d.mesh_version;
@@ -147,19 +179,50 @@ void pose(Deformation& d, const Document& document, std::shared_ptr<const Bindin
     d.transformations = transformations_of(motions);
     d.motions = std::move(motions);
     d.now.resize(mesh_of(d).rest.size());
-    if (in_runs) {
-        tile(d);
-        d.quick.others = {};
-        if (d.refined.empty()) d.refined = d.binding->automatic;
-        refine_runs(d, document, changed_runs(d.source, document, mesh_of(d)));
-    } else {
-        refine_all(d, document, rebound);
-        tile(d);
-        deform_all(d, document, dragged);
-    }
+    const Refining refining = refining_for(d, document, rebound);
+    if (refining.all) refine_all(d, document);
+    if (refining.all || rebound) untile(d);
+    tile(d);
+    refine_runs(d, document, refining.runs, same_pose);
+    if (!same_pose || refining.all) deform_all(d, document, dragged);
     d.moved = !std::all_of(document.probes.begin(), document.probes.end(), at_rest);
     d.source = document;
     ++d.version;
+}
+
+std::size_t refining_work(const Deformation& d, const Document& document) {
+    assert(fits(d.binding.get(), document));
+    if (d.source == document) return 0;
+    const Refining refining = refining_for(d, document, false);
+    const std::size_t probes = document.probes.size(), table = d.now.size() * probes;
+    std::size_t work = 0;
+    if (refining.all) work = !is_refined(document) ? table / 4 : document.stiffness ? 4 * table : table;
+    if (!refining.runs.empty() && !d.refined) work = table / 2;  // is copied
+    for (const VertexRun run : refining.runs) work += run.count * probes;
+    return work;
+}
+
+std::optional<Document> in_pose_of(const Document& weighed, const Document& posed) {
+    if (weighed.picture != posed.picture ||
+        !std::ranges::equal(weighed.probes, posed.probes, {}, &Probe::id, &Probe::id))
+        return {};
+    Document document = weighed;
+    document.blend = posed.blend;
+    for (std::size_t i = 0; i < posed.probes.size(); ++i) {
+        const PaintPtr paint = document.probes[i].paint;
+        const bool locked = document.probes[i].locked;
+        document.probes[i] = posed.probes[i];
+        document.probes[i].paint = paint;
+        document.probes[i].locked = locked;
+    }
+    return document;
+}
+
+void replace(Deformation& d, Deformation made) {
+    const bool same_mesh = d.binding && made.binding && d.binding->mesh == made.binding->mesh;
+    made.mesh_version = d.mesh_version + (same_mesh ? 0 : 1);
+    made.version = d.version + 1;
+    d = std::move(made);
 }
 
 void update(Deformation& deformation, const Document& document, Pace pace) {

@@ -26,9 +26,9 @@ struct Quick {
 
 struct Deformation {
     std::shared_ptr<const Binding> binding;  ///< null before the first update
-    /// #vertices x #probes, row-major: the automatic weights with paint, stiffness and limits; empty where
-    /// there are none of these.
-    std::vector<float> refined;
+    /// #vertices x #probes, row-major: the automatic weights with paint, stiffness and limits; null where
+    /// there are none of these. Copies share it until one of them changes it.
+    std::shared_ptr<std::vector<float>> refined;
     std::vector<Motion<double>> motions;              ///< #probes, about the picture's centre
     std::vector<DualComplex<float>> transformations;  ///< #probes: the motions' DCNs
     std::vector<glm::vec2> now;                       ///< #vertices, image pixels
@@ -69,6 +69,17 @@ void update(Deformation& deformation, const Document& document, Pace pace = Pace
 /// document.
 void pose(Deformation& deformation, const Document& document, std::shared_ptr<const Binding> binding,
           Pace pace = Pace::settled);
+
+/// How much work pose() has with the weights before it moves anything, where the deformation keeps its
+/// binding: about the number of weights to be settled. 0 where they are the document's already.
+std::size_t refining_work(const Deformation& deformation, const Document& document);
+
+/// The document `weighed` in the pose of `posed`, which has the same probes: what can be shown while the
+/// weights of `posed` are not there yet. Empty where the probes are others.
+std::optional<Document> in_pose_of(const Document& weighed, const Document& posed);
+
+/// Puts a deformation that was worked out elsewhere in the place of another one, whose versions go on.
+void replace(Deformation& deformation, Deformation made);
 
 /// Where another blend takes the vertices in the same pose: #vertices, image pixels.
 std::vector<glm::vec2> positions_by(const Deformation& deformation, const BlendMethod& blend);

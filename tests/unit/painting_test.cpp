@@ -240,7 +240,7 @@ TEST_F(PaintingTest, CommandsPaintTheWholeMap) {
 
 TEST_F(PaintingTest, CommandsWaitForTheWeights) {
     click({100, 100});
-    editor.binds_elsewhere = true;  // and nobody does
+    editor.deforms_elsewhere = true;  // and nobody does
     Document document = editor.document;
     document.probes.erase(document.probes.begin());
     editor.document = document;
@@ -251,6 +251,66 @@ TEST_F(PaintingTest, CommandsWaitForTheWeights) {
     editor.deformation = {};
     invert_paint(editor);
     EXPECT_TRUE(editor.tasks.empty());
+}
+
+TEST_F(PaintingTest, ManyWeightsAreWorkedOutElsewhereAndTheOldOnesGoOnDeforming) {
+    editor.document.mesh.cells = 1000;
+    for (int i = 0; i < 6; ++i) {
+        editor.document.probes.push_back(probe_at({50 + 40 * i, 80}, {50 + 40 * i, 80}));
+        editor.document.probes.back().id = i + 4;
+    }
+    const auto elsewhere = [&] {
+        Deformation made;
+        update(made, editor.document);
+        return made;
+    };
+    editor.deformation = elsewhere();
+    editor.deforms_elsewhere = true;
+    const auto version = editor.deformation.version, mesh = editor.deformation.mesh_version;
+    const auto unpainted = editor.deformation.now;
+
+    editor.brush.value = 0.5;
+    fill_paint(editor);
+    refresh(editor);
+    EXPECT_FALSE(is_deformed(editor));
+    EXPECT_FALSE(editor.deformation.refined) << "that would have taken long";
+    EXPECT_EQ(editor.deformation.now, unpainted);
+    Deformation filled = elsewhere();
+
+    // Whatever the weights are, the pose is the document's own.
+    editor.document.probes[1].now.x += 30;
+    Document posed = editor.document;
+    for (Probe& probe : posed.probes) probe.paint = nullptr;
+    refresh(editor);
+    EXPECT_FALSE(is_deformed(editor));
+    EXPECT_EQ(editor.deformation.source, posed);
+    EXPECT_NE(editor.deformation.now, unpainted);
+
+    // What comes is taken, although the probe has moved meanwhile.
+    editor.next_deformation = filled;
+    refresh(editor);
+    EXPECT_TRUE(is_deformed(editor));
+    EXPECT_FALSE(editor.next_deformation);
+    EXPECT_GT(editor.deformation.version, version);
+    EXPECT_EQ(editor.deformation.mesh_version, mesh + 1) << "another binding's mesh";
+    EXPECT_EQ(editor.deformation.now, elsewhere().now);
+
+    // A dab is settled at once.
+    click({100, 100});
+    refresh(editor);
+    EXPECT_TRUE(is_deformed(editor));
+
+    // What comes too late is not.
+    editor.document.probes[0].paint = nullptr;
+    refresh(editor);
+    EXPECT_TRUE(is_deformed(editor)) << "without paint there is little to do";
+    const auto now = editor.deformation.now;
+    editor.next_deformation = std::move(filled);
+    editor.next_deformation->binding = editor.deformation.binding;
+    refresh(editor);
+    EXPECT_TRUE(is_deformed(editor));
+    EXPECT_EQ(editor.deformation.now, now);
+    EXPECT_FALSE(editor.next_deformation);
 }
 
 TEST_F(PaintingTest, LockedProbesKeepTheirPaint) {
