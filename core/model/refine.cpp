@@ -173,12 +173,15 @@ void settle_run(const Document& document, const Binding& binding, VertexRun run,
 
 std::vector<float> stiffness_at(const PaintMap& paint, const PictureFrame& frame,
                                 std::span<const glm::vec2> vertices) {
-    std::vector<float> stiffness;
-    stiffness.reserve(vertices.size());
-    for (const glm::dvec2 vertex : vertices) {
-        const Paint at = sample(paint, to_texels(paint, frame, vertex));
-        stiffness.push_back(at.value * at.coverage);
-    }
+    std::vector<float> stiffness(vertices.size());
+    constexpr std::size_t as_many_as = 16;  // a look at the paint is about as much work as that many weights
+    over_blocks({0, vertices.size()}, vertices.size(), as_many_as, [&](VertexRun run) {
+        for (std::size_t v = run.first; v < run.first + run.count; ++v) {
+            const Paint at = sample(paint, to_texels(paint, frame, glm::dvec2(vertices[v])));
+            stiffness[v] = at.value * at.coverage;
+        }
+        return std::size_t{0};
+    });
     return stiffness;
 }
 

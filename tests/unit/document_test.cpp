@@ -114,6 +114,22 @@ TEST(Deformation, KnowsHowMuchThereIsToSettle) {
     EXPECT_GE(work(), table);
 }
 
+TEST(Deformation, VersionsGoOnWhereItIsReplaced) {
+    Document document = blank_document(200, 200);
+    add_probe(document, {10, 20}, {30, 40}, 1);
+    Deformation deformation, same_mesh, other_mesh;
+    update(deformation, document);
+    pose(same_mesh, document, deformation.binding);
+    update(other_mesh, document);
+    const auto version = deformation.version, mesh = deformation.mesh_version;
+    replace(deformation, same_mesh);
+    EXPECT_EQ(deformation.version, version + 1);
+    EXPECT_EQ(deformation.mesh_version, mesh);
+    replace(deformation, other_mesh);
+    EXPECT_EQ(deformation.version, version + 2);
+    EXPECT_EQ(deformation.mesh_version, mesh + 1);
+}
+
 TEST(Deformation, CopiesKeepTheirWeights) {
     Document document = blank_document(200, 200);
     add_probe(document, {10, 20}, {30, 40}, 1);

@@ -268,6 +268,7 @@ TEST_F(PaintingTest, ManyWeightsAreWorkedOutElsewhereAndTheOldOnesGoOnDeforming)
     editor.deforms_elsewhere = true;
     const auto version = editor.deformation.version, mesh = editor.deformation.mesh_version;
     const auto unpainted = editor.deformation.now;
+    Deformation late = editor.deformation;
 
     editor.brush.value = 0.5;
     fill_paint(editor);
@@ -301,12 +302,9 @@ TEST_F(PaintingTest, ManyWeightsAreWorkedOutElsewhereAndTheOldOnesGoOnDeforming)
     EXPECT_TRUE(is_deformed(editor));
 
     // What comes too late is not.
-    editor.document.probes[0].paint = nullptr;
-    refresh(editor);
-    EXPECT_TRUE(is_deformed(editor)) << "without paint there is little to do";
     const auto now = editor.deformation.now;
-    editor.next_deformation = std::move(filled);
-    editor.next_deformation->binding = editor.deformation.binding;
+    late.binding = editor.deformation.binding;
+    editor.next_deformation = std::move(late);
     refresh(editor);
     EXPECT_TRUE(is_deformed(editor));
     EXPECT_EQ(editor.deformation.now, now);
