@@ -87,7 +87,7 @@ void draw_shown(App& app, const Shown& before) {
     view.width = now.size.x;
     view.height = now.size.y;
     const auto draw = [&](int first_column) {
-        renderer.draw(view, 1, true, first_column);
+        renderer.draw(view, 1, true, first_column, Fineness::seen);
         app.shown_texture = renderer.display(view, display_colours(app.theme), double(app.px(12)),
                                              now.bound && now.mesh, first_column);
     };

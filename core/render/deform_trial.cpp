@@ -79,7 +79,7 @@ void DeformTrial::draw() {
     glUniform2f(uniform(program, "scale"), 1, 1);
     glUniform2f(uniform(program, "size"), side, side);
     glUniform4f(uniform(program, "colour"), 1, 1, 1, 1);
-    mesh_.draw(0, 1);
+    mesh_.draw_one();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glUseProgram(0);  // it goes with the trial: the window's toolkit would put it back
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <numeric>
 
 namespace probewarp {
 
@@ -24,16 +25,29 @@ VertexRun changed_run(std::span<const glm::vec2> before, std::span<const glm::ve
     return {std::size_t(first), std::size_t(before.rend() - same_end - first)};
 }
 
-/// Each edge of the triangles once. corners: #triangles x 3
-std::vector<std::array<std::uint32_t, 2>> edges_of(std::span<const std::uint32_t> corners) {
-    std::vector<std::array<std::uint32_t, 2>> edges;
-    edges.reserve(corners.size());
-    for (std::size_t i = 0; i < corners.size(); ++i) {
+/// Each edge of the triangles once, from the lower vertex to the higher. corners: #triangles x 3
+std::vector<std::array<std::uint32_t, 2>> edges_of(std::span<const std::uint32_t> corners,
+                                                   std::size_t vertices) {
+    const auto edge = [&](std::size_t i) {
         const std::uint32_t from = corners[i], to = corners[i % 3 == 2 ? i - 2 : i + 1];
-        edges.push_back({std::min(from, to), std::max(from, to)});
+        return std::array{std::min(from, to), std::max(from, to)};
+    };
+    // The higher ends, sorted by the lower ones: each of these has but a few.
+    std::vector<std::size_t> first(vertices + 1);
+    for (std::size_t i = 0; i < corners.size(); ++i) ++first[edge(i)[0] + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::uint32_t> ends(corners.size());
+    std::vector<std::size_t> next(first.begin(), first.end() - 1);
+    for (std::size_t i = 0; i < corners.size(); ++i) ends[next[edge(i)[0]]++] = edge(i)[1];
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    edges.reserve(corners.size() / 2 + vertices);
+    for (std::size_t v = 0; v < vertices; ++v) {
+        const auto own = std::span(ends).subspan(first[v], first[v + 1] - first[v]);
+        std::ranges::sort(own);
+        const auto repeated = std::ranges::unique(own);
+        for (const std::uint32_t end : own.first(own.size() - repeated.size()))
+            edges.push_back({std::uint32_t(v), end});
     }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     return edges;
 }
 
@@ -52,8 +66,6 @@ DrawnMesh::DrawnMesh()
       rest_(make_buffer()),
       now_(make_buffer()),
       more_(make_buffer()),
-      triangles_(make_buffer()),
-      edges_(make_buffer()),
       weights_(make_buffer()),
       transformations_(make_buffer()),
       weights_texture_(make_texture()),
@@ -75,11 +87,13 @@ void DrawnMesh::set_mesh(const Mesh& mesh) {
     glBindVertexArray(array_.name());
     set_points(rest_, 0);
     set_points(now_, 1);
-    upload(GL_ELEMENT_ARRAY_BUFFER, triangles_, std::as_bytes(std::span(mesh.triangles)), GL_STATIC_DRAW);
-    corners_ = mesh.triangles;
-    edge_count_ = 0;
+    mesh_ = mesh;
+    whole_ = is_whole(mesh);
+    levels_.clear();
+    level_for(1);
     if (weight_count_ > 0) set_weights({});
     held_.clear();
+    blocks_.reset();
     set_positions(mesh.rest);
 }
 
@@ -97,6 +111,7 @@ void DrawnMesh::set_positions(std::span<const glm::vec2> now) {
                         bytes.data());
         uploaded_ += bytes.size();
     }
+    if (run.count > 0) blocks_.reset();
     held_.resize(now.size());
     std::copy_n(now.begin() + std::ptrdiff_t(run.first), run.count,
                 held_.begin() + std::ptrdiff_t(run.first));
@@ -147,6 +162,7 @@ void DrawnMesh::move(std::span<const DualComplex<float>> transformations, glm::v
     glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     held_.clear();
+    blocks_.reset();
     check_gl("moving the mesh");
 }
 
@@ -159,22 +175,59 @@ void DrawnMesh::set_attribute(GLuint location, std::span<const std::byte> values
     check_gl("uploading the overlay");
 }
 
-void DrawnMesh::draw(std::size_t first, std::size_t count) const {
+DrawnMesh::Level& DrawnMesh::level_for(int stride) {
+    const auto found = std::ranges::find(levels_, stride, [](const Level& l) { return l.detail.stride; });
+    if (found != levels_.end()) return *found;
+    Level& level = levels_.emplace_back(detail_of(mesh_, stride), make_buffer(), make_buffer());
     glBindVertexArray(array_.name());
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.name());
-    glDrawElements(GL_TRIANGLES, GLsizei(count * 3), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(first * 3 * sizeof(corners_[0])));
+    upload(GL_ELEMENT_ARRAY_BUFFER, level.triangles, std::as_bytes(std::span(level.detail.triangles)),
+           GL_STATIC_DRAW);
+    level.detail.triangles = {};
+    return level;
 }
 
-void DrawnMesh::draw_lines() {
-    glBindVertexArray(array_.name());
-    if (edge_count_ == 0) {
-        const auto edges = edges_of(corners_);
-        upload(GL_ELEMENT_ARRAY_BUFFER, edges_, std::as_bytes(std::span(edges)), GL_STATIC_DRAW);
-        edge_count_ = edges.size();
+const MeshBlocks* DrawnMesh::blocks() {
+    if (held_.empty()) return nullptr;
+    if (!blocks_) blocks_ = blocks_of(mesh_, held_);
+    return &*blocks_;
+}
+
+void DrawnMesh::draw(const View& view, Fineness fineness) {
+    const MeshBlocks* now = blocks();
+    const int stride = fineness == Fineness::seen && whole_ ? stride_for(mesh_, now, view) : 1;
+    const Level& level = level_for(stride);
+    std::vector<TriangleRun> runs{{0, level.detail.first.back()}};
+    if (now) runs = visible_runs(level.detail, *now, view);
+    std::vector<GLsizei> counts;
+    std::vector<const void*> starts;
+    drawn_ = 0;
+    for (const TriangleRun run : runs) {
+        counts.push_back(GLsizei(run.count * 3));
+        starts.push_back(reinterpret_cast<const void*>(run.first * 3 * sizeof(std::uint32_t)));
+        drawn_ += run.count;
     }
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, edges_.name());
-    glDrawElements(GL_LINES, GLsizei(edge_count_ * 2), GL_UNSIGNED_INT, nullptr);
+    glBindVertexArray(array_.name());
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, level.triangles.name());
+    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, starts.data(), GLsizei(runs.size()));
+}
+
+void DrawnMesh::draw_one() {
+    glBindVertexArray(array_.name());
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, level_for(1).triangles.name());
+    glDrawElements(GL_TRIANGLES, 3, GL_UNSIGNED_INT, nullptr);
+}
+
+void DrawnMesh::draw_lines(const View& view) {
+    const int stride = whole_ ? stride_for(mesh_, blocks(), view) : 1;
+    Level& level = level_for(stride);
+    glBindVertexArray(array_.name());
+    if (level.edge_count == 0) {
+        const auto edges = edges_of(detail_of(mesh_, stride).triangles, vertices_);
+        upload(GL_ELEMENT_ARRAY_BUFFER, level.edges, std::as_bytes(std::span(edges)), GL_STATIC_DRAW);
+        level.edge_count = edges.size();
+    }
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, level.edges.name());
+    glDrawElements(GL_LINES, GLsizei(level.edge_count * 2), GL_UNSIGNED_INT, nullptr);
 }
 
 }  // namespace probewarp

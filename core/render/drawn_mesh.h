@@ -4,14 +4,22 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "math/dual_complex.h"
 #include "model/mesh.h"
 #include "render/gl_objects.h"
+#include "render/mesh_detail.h"
 
 namespace probewarp {
+
+/// What of the mesh's triangles is drawn.
+enum class Fineness {
+    all,
+    seen,  ///< fewer and larger ones where the mesh is finer than the target
+};
 
 /// Vertex attributes: 0 is the rest and 1 the place now, both image pixels.
 class DrawnMesh {
@@ -35,12 +43,15 @@ class DrawnMesh {
     /// One more attribute, of `components` floats a vertex. values: #vertices x components floats
     void set_attribute(GLuint location, std::span<const std::byte> values, int components);
 
-    /// Where the mesh folds, a later triangle lies over an earlier one.
-    void draw() const { draw(0, corners_.size() / 3); }
-    /// So many triangles, from the first one on.
-    void draw(std::size_t first, std::size_t count) const;
-    /// Each edge once.
-    void draw_lines();
+    /// Draws what may show in the view. Where the mesh folds, a later triangle lies over an earlier one.
+    void draw(const View& view, Fineness fineness);
+    /// The first triangle alone.
+    void draw_one();
+    /// Each edge once, as fine as Fineness::seen.
+    void draw_lines(const View& view);
+
+    /// Triangles of the last draw: for tests.
+    std::size_t drawn() const { return drawn_; }
 
     /// Bytes that were handed to the driver so far: for tests.
     std::size_t uploaded() const { return uploaded_; }
@@ -50,14 +61,27 @@ class DrawnMesh {
     void upload_texels(const GlBuffer& buffer, const GlTexture& texture, std::span<const std::byte> bytes,
                        GLenum format);
 
+    /// The mesh, or a coarser one, as the driver has it.
+    struct Level {
+        MeshDetail detail;  ///< without its triangles
+        GlBuffer triangles, edges;
+        std::size_t edge_count = 0;  ///< 0 before the first time
+    };
+    Level& level_for(int stride);
+    /// Null where it is not known where the mesh is now.
+    const MeshBlocks* blocks();
+
     GlVertexArray array_, rest_array_;  ///< all attributes; the rest alone
-    GlBuffer rest_, now_, more_, triangles_, edges_, weights_, transformations_;
+    GlBuffer rest_, now_, more_, weights_, transformations_;
     GlTexture weights_texture_, transformations_texture_;
     LazyProgram mover_;
     Target nowhere_;
-    std::vector<glm::vec2> held_;  ///< what `now_` holds; empty where that is not known
-    std::vector<std::uint32_t> corners_;
-    std::size_t vertices_ = 0, weight_count_ = 0, edge_count_ = 0, uploaded_ = 0;
+    std::vector<glm::vec2> held_;       ///< what `now_` holds; empty where that is not known
+    std::optional<MeshBlocks> blocks_;  ///< of `held_`, once there was need of them
+    Mesh mesh_;
+    bool whole_ = false;  ///< as is_whole says
+    std::vector<Level> levels_;
+    std::size_t vertices_ = 0, weight_count_ = 0, uploaded_ = 0, drawn_ = 0;
 };
 
 }  // namespace probewarp

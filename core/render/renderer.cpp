@@ -124,7 +124,7 @@ void Renderer::use_mesh_program(const View& view, int samples, bool with_overlay
     }
 }
 
-void Renderer::draw(const View& view, int samples, bool with_overlay, int first_column) {
+void Renderer::draw(const View& view, int samples, bool with_overlay, int first_column, Fineness fineness) {
     with_overlay = with_overlay && overlay_style_;
     // Float, because the sums of weighted colours must give every byte of a file back.
     resize(layer_, view.width * samples, view.height * samples, GL_RGBA32F);
@@ -137,7 +137,7 @@ void Renderer::draw(const View& view, int samples, bool with_overlay, int first_
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     if (moved_ || with_overlay)
-        mesh_.draw();
+        mesh_.draw(view, fineness);
     else
         draw_picture();
     glDisable(GL_BLEND);
@@ -220,7 +220,7 @@ void Renderer::draw_lines(const View& view, glm::vec4 colour) {
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    mesh_.draw_lines();
+    mesh_.draw_lines(view);
     glDisable(GL_BLEND);
 }
 

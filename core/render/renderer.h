@@ -69,7 +69,8 @@ class Renderer {
 
     /// Draws the deformed picture as weighted colours, samples x samples texels a target pixel. What is left
     /// of first_column, target pixels, stays as it was.
-    void draw(const View& view, int samples, bool with_overlay = false, int first_column = 0);
+    void draw(const View& view, int samples, bool with_overlay = false, int first_column = 0,
+              Fineness fineness = Fineness::all);
 
     /// Turns what draw drew into straight-alpha integers, filled with `background` or as transparent as it
     /// is, and writes them at (left, top) of `image`, whose depth they take.
@@ -84,6 +85,8 @@ class Renderer {
 
     /// Bytes of the mesh that were handed to the driver so far: for tests.
     std::size_t uploaded() const { return mesh_.uploaded(); }
+    /// The mesh's triangles that were drawn the last time: likewise.
+    std::size_t drawn() const { return mesh_.drawn(); }
 
   private:
     void set_view(const GlProgram& program, const View& view, int samples) const;

@@ -60,7 +60,7 @@ struct Scene {
         renderer.set_weights(weights_of(deformation));
     }
     void draw() {
-        renderer.draw(view, 1);
+        renderer.draw(view, 1, false, 0, Fineness::seen);
         renderer.display(view, {}, 12, false);
         glFinish();
     }
