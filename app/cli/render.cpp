@@ -138,11 +138,12 @@ void render_picture(const RenderOptions& o, const ImageFormat& format, const Def
                 plan.file.settings);  // refuses what is too large before anything is opened
     Progress progress(o.quiet);
     Output output(output_path(o), timings);
-    const auto encoding = timings.measure(Stage::draw, [&] {
-        return Drawer(plan).draw(deformation, output, [&](double part) { progress.show(part); });
-    });
     const Picture& picture = *deformation.source.picture;
-    wait_for_rows(picture, picture.image.height);  // what does not show must be sound too
+    const auto encoding = timings.measure(Stage::draw, [&] {
+        auto drawn = Drawer(plan).draw(deformation, output, [&](double part) { progress.show(part); });
+        wait_for_rows(picture, picture.image.height);  // what does not show must be sound too
+        return drawn;
+    });
     if (picture.arriving) {
         const auto [decoding, waiting] = picture.arriving->times();
         timings.add(Stage::decode, decoding);

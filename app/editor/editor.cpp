@@ -42,15 +42,20 @@ bool is_nearer(const Deformation& next, const Deformation& present, const Docume
     if (!fits(present.binding.get(), document)) return true;
     if (next.binding != present.binding)
         return is_bound(next.binding.get(), document) || !is_bound(present.binding.get(), document);
-    return refining_work(next, document) < refining_work(present, document);
+    // Of two that leave as much to do the later one follows the hand.
+    const std::size_t work = refining_work(present, document);
+    return work > 0 && refining_work(next, document) <= work;
 }
 
 void take_next(Editor& editor) {
     std::optional<Deformation>& next = editor.next_deformation;
     const bool strokes = editor.gesture && editor.gesture->stroke;
-    // A stroke keeps the mesh that it began on.
-    if (!next || (strokes && next->binding != editor.deformation.binding)) return;
-    if (is_nearer(*next, editor.deformation, editor.document)) replace(editor.deformation, std::move(*next));
+    if (!next) return;
+    if (is_nearer(*next, editor.deformation, editor.document)) {
+        // A stroke keeps the mesh that it began on.
+        if (strokes && next->binding != editor.deformation.binding) return;
+        replace(editor.deformation, std::move(*next));
+    }
     next.reset();
 }
 

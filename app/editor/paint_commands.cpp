@@ -11,17 +11,21 @@ namespace {
 
 std::size_t chosen_place(const Editor& editor) { return place_of(editor.document, editor.selected); }
 
-/// Has the window work out a document beside itself. The deformation is copied: the window goes on with its
-/// own.
+/// Has the window work out a document beside itself. The deformation is copied, and settled there where it is
+/// not the document's own yet: the window goes on with its own.
 void add_task(Editor& editor, std::string label, std::function<Document(const Deformation&)> work) {
     refresh(editor);
-    if (!is_deformed(editor)) {
+    if (!is_bound(editor.deformation.binding.get(), editor.document)) {
         editor.notice = "The weights are still being worked out.";
         return;
     }
     editor.tasks.push_back(
-        {std::move(label), [deformation = std::make_shared<const Deformation>(editor.deformation),
-                            work = std::move(work)] { return work(*deformation); }});
+        {std::move(label), [before = std::make_shared<const Deformation>(editor.deformation),
+                            document = editor.document, work = std::move(work)] {
+             Deformation deformation = *before;
+             pose(deformation, document, deformation.binding);
+             return work(deformation);
+         }});
 }
 
 /// A task that gives the chosen probe a new map, worked out from its shares.

@@ -113,7 +113,9 @@ void fall_at(Editor& editor, PaintStroke& stroke, glm::dvec2 point) {
 
 /// Why the chosen probe cannot be painted; empty where it can.
 std::string why_not(const Editor& editor) {
-    if (!editor.deformation.binding || !fits(editor.deformation.binding.get(), editor.document))
+    const Deformation& deformation = editor.deformation;
+    // What a stroke adds to is what the vertices have before it.
+    if (!fits(deformation.binding.get(), editor.document) || refining_work(deformation, editor.document) > 0)
         return "The weights are still being worked out.";
     if (paints_stiffness(editor)) return {};
     const Probe* probe = find_probe(editor.document, editor.selected);

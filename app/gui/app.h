@@ -87,10 +87,9 @@ struct App {
     std::unique_ptr<DeformJob> deform_job;                   ///< null while none is under way
     std::vector<std::unique_ptr<DeformJob>> abandoned_jobs;  ///< given up, and not yet at their end
     std::shared_ptr<const Binding> last_binding;  ///< whatever document it is of: the next one starts from it
-    std::optional<Document> undeformable;         ///< the document whose weights could not be worked out
-    std::string undeformable_reason;
-    std::optional<MeshPoint> under;  ///< of the deformed mesh under the pointer
-    std::vector<double> shares;      ///< #probes: there; empty beside the picture
+    std::optional<DeformFailure> failure;         ///< why the weights could not be worked out
+    std::optional<MeshPoint> under;               ///< of the deformed mesh under the pointer
+    std::vector<double> shares;                   ///< #probes: there; empty beside the picture
 
     Jobs jobs;
     std::vector<Message> messages;

@@ -17,10 +17,15 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// The editor's binding where it is the document's own; else null.
+bool strokes(const Editor& editor) { return editor.gesture && editor.gesture->stroke; }
+
+/// The binding that the document's weights are settled on: its own, or during a stroke the one that this
+/// began on. Null where there is none yet.
 std::shared_ptr<const Binding> present_binding(const Editor& editor) {
     const auto& binding = editor.deformation.binding;
-    return is_bound(binding.get(), editor.document) ? binding : nullptr;
+    const bool serves =
+        strokes(editor) ? fits(binding.get(), editor.document) : is_bound(binding.get(), editor.document);
+    return serves ? binding : nullptr;
 }
 
 void start(App& app) {
@@ -43,6 +48,12 @@ void start(App& app) {
     });
 }
 
+/// The job failed: it is not tried again before something changes that may help.
+void remember_failure(App& app, const DeformJob& job, const std::string& reason) {
+    app.failure = {job.document, job.binds, reason};
+    say(app, Tone::error, reason);
+}
+
 /// Takes what the job has, where it is there within `patience`.
 void finish(App& app, std::chrono::milliseconds patience) {
     if (app.deform_job->result.wait_for(patience) != std::future_status::ready) return;
@@ -50,17 +61,14 @@ void finish(App& app, std::chrono::milliseconds patience) {
     app.wake();
     try {
         app.editor.next_deformation = ended->result.get();
-        app.last_binding = app.editor.next_deformation->binding;
+        // The cache of another one may still be in use by a job that was abandoned.
+        if (ended->binds) app.last_binding = app.editor.next_deformation->binding;
         app.deform_milliseconds = ended->milliseconds;
     } catch (const GivenUp&) {
     } catch (const std::bad_alloc&) {
-        app.undeformable = ended->document;
-        app.undeformable_reason = "There is not enough memory for the weights; choose a coarser mesh.";
-        say(app, Tone::error, app.undeformable_reason);
+        remember_failure(app, *ended, "There is not enough memory for the weights; choose a coarser mesh.");
     } catch (const std::exception& error) {
-        app.undeformable = ended->document;
-        app.undeformable_reason = error.what();
-        say(app, Tone::error, app.undeformable_reason);
+        remember_failure(app, *ended, error.what());
     }
 }
 
@@ -73,8 +81,10 @@ void abandon(App& app) {
 }
 
 /// Whether what was worked out last failed, and would again.
-bool is_undeformable(const App& app) {
-    return app.undeformable && binds_alike(*app.undeformable, app.editor.document);
+bool fails(const App& app) {
+    if (!app.failure) return false;
+    const Document &failed = app.failure->document, &present = app.editor.document;
+    return app.failure->binding ? binds_alike(failed, present) : unposed(failed) == unposed(present);
 }
 
 bool wants_job(const App& app) {
@@ -82,29 +92,33 @@ bool wants_job(const App& app) {
     if (!has_picture(editor) || defers_deformation(editor) || editor.next_deformation) return false;
     if (present_binding(editor)) {
         if (refining_work(editor.deformation, editor.document) <= refined_at_once) return false;
-    } else if (editor.gesture && editor.gesture->stroke) {
+    } else if (strokes(editor)) {
         return false;  // a stroke keeps the mesh that it began on
     }
     // One that cannot be interrupted where it is may still have all its memory: not one more each time.
-    return app.abandoned_jobs.size() < 2 && !is_undeformable(app);
+    return app.abandoned_jobs.size() < 2 && !fails(app);
+}
+
+/// What was replaced meanwhile is not worth waiting for; a probe that is still being dragged is.
+bool is_outdated(const DeformJob& job, const Editor& editor) {
+    return !same_means(job.document, editor.document) || (!job.binds && !present_binding(editor));
 }
 
 }  // namespace
 
 std::string why_not_deformed(const App& app) {
     if (is_deformed(app.editor)) return {};
-    return is_undeformable(app) ? "The weights cannot be worked out: " + app.undeformable_reason
-                                : "The weights are still being worked out.";
+    return fails(app) ? "The weights cannot be worked out: " + app.failure->reason
+                      : "The weights are still being worked out.";
 }
 
 void update_deformation(App& app) {
     Editor& editor = app.editor;
     if (app.deform_job) {
-        // What was replaced meanwhile is not worth waiting for; a probe that is still being dragged is.
-        if (same_means(app.deform_job->document, editor.document))
-            finish(app, 0ms);
-        else
+        if (is_outdated(*app.deform_job, editor))
             abandon(app);
+        else
+            finish(app, 0ms);
     }
     std::erase_if(app.abandoned_jobs,
                   [](const auto& job) { return job->result.wait_for(0ms) == std::future_status::ready; });

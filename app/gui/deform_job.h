@@ -31,6 +31,13 @@ struct DeformJob {
     }
 };
 
+/// Why a document could not be deformed.
+struct DeformFailure {
+    Document document;
+    bool binding = false;  ///< whether for want of a binding, rather than of what follows from one
+    std::string reason;
+};
+
 /// Brings the editor's deformation up to date. One that is ready within a few milliseconds is used at once;
 /// meanwhile the last weights go on deforming, where they fit.
 void update_deformation(App& app);

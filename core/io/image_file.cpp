@@ -108,7 +108,7 @@ Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pi
         throw Error(called +
                     ": is not a picture that can be read; expected PNG, JPEG, BMP, TGA, GIF, PSD or PNM");
     Picture picture{{}, name_without_folder(name), std::string(format->name), std::move(bytes), nullptr};
-    call_it(called, [&] {
+    naming_errors(name, [&] {
         if (pixels == Pixels::whole || !format->read_rows) {
             picture.image = format->decode(picture.original);
             return;
@@ -116,7 +116,7 @@ Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pi
         auto reader = format->read_rows(picture.original);
         picture.image = reader->blank();
         if (picture.image.opaque)
-            picture.arriving = read_beside(std::move(reader), picture.image, called);
+            picture.arriving = read_beside(std::move(reader), picture.image, name);
         else
             read_all(*reader, picture.image);
     });

@@ -348,16 +348,6 @@ Opened open_project(std::vector<std::byte> bytes) {
     return {std::move(parsed.document), std::move(image), parsed.image_file, parsed.image_name};
 }
 
-/// Runs `step`, whose errors get the project's name; names inside may hold anything.
-template <class Step>
-auto called(const std::string& name, const Step& step) {
-    try {
-        return step();
-    } catch (const Error& error) {
-        throw Error(fmt::format("{}: {}", printable(name), printable(error.what())));
-    }
-}
-
 }  // namespace
 
 std::vector<std::byte> encode_project(const Document& document) {
@@ -400,13 +390,13 @@ std::vector<std::byte> encode_project(const Document& document) {
 }
 
 Document decode_project(std::vector<std::byte> bytes, const std::string& name, Pixels pixels) {
-    Opened opened = called(name, [&] { return open_project(std::move(bytes)); });
+    Opened opened = naming_errors(name, [&] { return open_project(std::move(bytes)); });
     Document& document = opened.document;
     Picture picture =
         decode_picture(std::move(opened.image), fmt::format("{}: {}", name, opened.image_file), pixels);
     picture.name = opened.image_name;
     document.picture = std::make_shared<Picture>(std::move(picture));
-    called(name, [&] { check_size(document); });
+    naming_errors(name, [&] { check_size(document); });
     return std::move(document);
 }
 

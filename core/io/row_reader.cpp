@@ -1,12 +1,16 @@
 #include "io/row_reader.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
+
+#include "io/printable.h"
 
 namespace probewarp {
 
@@ -24,15 +28,22 @@ double seconds_since(Clock::time_point start) {
 
 class RowsReadBeside final : public ArrivingRows {
   public:
-    RowsReadBeside(std::unique_ptr<RowReader> reader, Image& image, std::string called)
-        : height_(image.height),
-          thread_([this, reader = std::move(reader), pixels = writable_pixels(image),
-                   called = std::move(called)] { read(*reader, pixels, called); }) {}
+    RowsReadBeside(std::unique_ptr<RowReader> reader, Image& image, std::string name)
+        : reader_(std::move(reader)),
+          pixels_(writable_pixels(image)),
+          name_(std::move(name)),
+          height_(image.height) {
+        try {
+            thread_ = std::thread([this] { read(); });
+        } catch (const std::system_error&) {  // the system has none left
+            read();
+        }
+    }
     RowsReadBeside(const RowsReadBeside&) = delete;
     RowsReadBeside& operator=(const RowsReadBeside&) = delete;
     ~RowsReadBeside() override {
         given_up_ = true;
-        thread_.join();
+        if (thread_.joinable()) thread_.join();
     }
 
     void wait(int rows) const override {
@@ -49,10 +60,11 @@ class RowsReadBeside final : public ArrivingRows {
     }
 
   private:
-    void read(RowReader& reader, std::span<std::byte> pixels, const std::string& called) {
+    void read() {
         try {
-            call_it(called, [&] {
-                for (int rows = 0; rows < height_ && !given_up_;) tell(rows = reader.read(pixels), nullptr);
+            naming_errors(name_, [&] {
+                for (int rows = 0; rows < height_ && !given_up_;)
+                    tell(rows = reader_->read(pixels_), nullptr);
             });
         } catch (...) {
             tell(0, std::current_exception());
@@ -69,6 +81,9 @@ class RowsReadBeside final : public ArrivingRows {
         changed_.notify_all();
     }
 
+    const std::unique_ptr<RowReader> reader_;
+    const std::span<std::byte> pixels_;
+    const std::string name_;
     const int height_;
     const Clock::time_point start_ = Clock::now();
     std::atomic<bool> given_up_ = false;
@@ -89,8 +104,8 @@ void read_all(RowReader& reader, Image& image) {
 }
 
 std::shared_ptr<const ArrivingRows> read_beside(std::unique_ptr<RowReader> reader, Image& image,
-                                                const std::string& called) {
-    return std::make_shared<const RowsReadBeside>(std::move(reader), image, called);
+                                                const std::string& name) {
+    return std::make_shared<const RowsReadBeside>(std::move(reader), image, name);
 }
 
 }  // namespace probewarp

@@ -3,12 +3,9 @@
 #pragma once
 
 #include <memory>
-#include <new>
 #include <span>
 #include <string>
 
-#include "io/printable.h"
-#include "model/error.h"
 #include "model/image.h"
 
 namespace probewarp {
@@ -29,20 +26,8 @@ class RowReader {
 void read_all(RowReader& reader, Image& image);
 
 /// Likewise on a thread of its own, which ends with what is returned. Only the image's pixels must stay where
-/// they are meanwhile. called: what errors call it
+/// they are meanwhile. name: what errors call it
 std::shared_ptr<const ArrivingRows> read_beside(std::unique_ptr<RowReader> reader, Image& image,
-                                                const std::string& called);
-
-/// Runs `step`, whose errors become "CALLED: what is wrong; what is expected".
-template <class Step>
-void call_it(const std::string& called, const Step& step) {
-    try {
-        step();
-    } catch (const Error& error) {
-        throw Error(called + ": " + printable(error.what()));
-    } catch (const std::bad_alloc&) {
-        throw Error(called + ": needs more memory than there is; expected a smaller picture");
-    }
-}
+                                                const std::string& name);
 
 }  // namespace probewarp

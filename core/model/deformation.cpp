@@ -1,6 +1,7 @@
 #include "model/deformation.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -147,6 +148,8 @@ void refine_runs(Deformation& d, const Document& document, std::span<const Verte
     d.quick.others = {};
     if (!d.refined || d.refined.use_count() > 1)
         d.refined = std::make_shared<std::vector<float>>(weights_of(d).begin(), weights_of(d).end());
+    // A copy that was let go on another thread has read what is written to now.
+    std::atomic_thread_fence(std::memory_order_acquire);
     for (const VertexRun run : runs) {
         if (same_pose) d.cancelled -= deform_run(d, document, run);
         refine_run(d, document, run);

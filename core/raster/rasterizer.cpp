@@ -2,6 +2,7 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_reduce.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
@@ -114,13 +115,20 @@ void Rasterizer::fetch(int picture_rows) {
 /// How many of the picture's rows, from the top, show in these rows of the view, mipmaps included.
 int Rasterizer::rows_shown(const Rows& rows) const {
     const Image& image = picture_.image;
+    if (is_thin(image)) return image.height;
     // A thin mipmap, of which a pixel is more than half of a side, is there once it is whole.
     const double widest = std::min(image.width, image.height) / 4.0;
-    double lowest = 1;
-    for (int bin = rows.first / bin_rows_; bin * bin_rows_ < rows.end; ++bin)
-        lowest =
-            std::max(lowest, lowest_lookup(mesh_, bins_.bin(std::size_t(bin)), samples_view_,
-                                           {rows.first * style_.samples, rows.end * style_.samples}, widest));
+    using Range = oneapi::tbb::blocked_range<int>;
+    const double lowest = oneapi::tbb::parallel_reduce(
+        Range(rows.first / bin_rows_, (rows.end - 1) / bin_rows_ + 1), 1.0,
+        [&](const Range& bins, double so_far) {
+            for (int bin = bins.begin(); bin < bins.end(); ++bin)
+                so_far = std::max(
+                    so_far, lowest_lookup(mesh_, bins_.bin(std::size_t(bin)), samples_view_,
+                                          {rows.first * style_.samples, rows.end * style_.samples}, widest));
+            return so_far;
+        },
+        [](double a, double b) { return std::max(a, b); });
     // Whole pixels of the smallest mipmap.
     const double step = double(std::size_t{1} << images_.size());
     return int(std::min(std::ceil(lowest / step) * step, double(image.height)));

@@ -100,18 +100,16 @@ def one_line(err):
     return None
 
 
-def files_in(folder):
-    """Every file below the folder, with what shows that it was touched. A folder's own time does not count: a picture
-    is written beside its place while it is decoded, and taken away again where that fails."""
+def files_in(folder, folder_times=True):
+    """Every file below the folder, with what shows that it was touched. Without `folder_times` it may have been beside
+    its place for a while, as a picture is that is written while it is decoded."""
     found = {}
     for place, folders, files in os.walk(folder):
-        for name in folders:
-            status = os.lstat(os.path.join(place, name))
-            found[os.path.relpath(os.path.join(place, name), folder)] = (status.st_mode, status.st_ino)
-        for name in files:
+        for name in folders + files:
             path = os.path.join(place, name)
             status = os.lstat(path)
-            found[os.path.relpath(path, folder)] = (status.st_mode, status.st_ino, status.st_size, status.st_mtime_ns)
+            when = status.st_mtime_ns if folder_times or name in files else None
+            found[os.path.relpath(path, folder)] = (status.st_mode, status.st_ino, status.st_size, when)
     return found
 
 
