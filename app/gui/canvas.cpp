@@ -71,7 +71,7 @@ void draw_shown(App& app, const Shown& before) {
                                before.still != now.still || !before.compared.empty() || !before.pose.empty();
     const WeightsKey weights = weights_key(editor.deformation);
     drop_outdated_weights(app, weights);
-    if (now.bound && new_mesh) renderer.set_mesh(mesh_of(editor.deformation));
+    if (now.bound && new_mesh) renderer.set_mesh(editor.deformation.binding->mesh);
     if (!now.bound)
         renderer.set_positions({}, false);
     else if (!now.pose.empty())

@@ -49,16 +49,16 @@ bool draws_in_software(const std::string& renderer) {
 }  // namespace
 
 DeformTrial::DeformTrial()
-    : grid_(grid_mesh(side, side, cells)),
+    : grid_(std::make_shared<const Mesh>(grid_mesh(side, side, cells))),
       now_(vertices),
       program_([] { return make_program(shaders::mesh_vert, shaders::lines_frag); }) {
-    assert(grid_.rest.size() == vertices);
+    assert(grid_->rest.size() == vertices);
     for (int i = 0; i < probes; ++i) {
         const std::complex<double> rest = std::polar(side / 3.0, i * 0.8);
         motions_.push_back(motion(0.1 * i, rest, rest + 20.0));
         transformations_.push_back(cast<float>(motions_.back().p));
     }
-    weights_ = trial_weights(grid_, motions_, centre);
+    weights_ = trial_weights(*grid_, motions_, centre);
     tiles_ = make_tiles(weights_, probes);
     others_ = sum_others(tiles_, {motions_, transformations_, centre}, 0);
     mesh_.set_mesh(grid_);
@@ -86,7 +86,7 @@ void DeformTrial::draw() {
 
 double DeformTrial::milliseconds_by_processor() {
     return milliseconds([this] {
-        deform_dlb_dragged(tiles_, others_, grid_.rest, {motions_, transformations_, centre}, now_);
+        deform_dlb_dragged(tiles_, others_, grid_->rest, {motions_, transformations_, centre}, now_);
         mesh_.set_positions(now_);
         draw();
     });

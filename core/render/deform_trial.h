@@ -39,7 +39,7 @@ class DeformTrial {
     double milliseconds_by_shader();
     void draw();
 
-    Mesh grid_;
+    std::shared_ptr<const Mesh> grid_;
     std::vector<float> weights_;
     WeightTiles tiles_;
     OthersSum others_;

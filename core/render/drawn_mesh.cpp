@@ -79,22 +79,21 @@ void DrawnMesh::upload(GLenum target, const GlBuffer& buffer, std::span<const st
     uploaded_ += bytes.size();
 }
 
-void DrawnMesh::set_mesh(const Mesh& mesh) {
-    vertices_ = mesh.rest.size();
-    upload(GL_ARRAY_BUFFER, rest_, std::as_bytes(std::span(mesh.rest)), GL_STATIC_DRAW);
+void DrawnMesh::set_mesh(std::shared_ptr<const Mesh> mesh) {
+    mesh_ = std::move(mesh);
+    whole_ = is_whole(*mesh_);
+    vertices_ = mesh_->rest.size();
+    upload(GL_ARRAY_BUFFER, rest_, std::as_bytes(std::span(mesh_->rest)), GL_STATIC_DRAW);
     glBindVertexArray(rest_array_.name());
     set_points(rest_, 0);
     glBindVertexArray(array_.name());
     set_points(rest_, 0);
     set_points(now_, 1);
-    mesh_ = mesh;
-    whole_ = is_whole(mesh);
     levels_.clear();
-    level_for(1);
     if (weight_count_ > 0) set_weights({});
     held_.clear();
     blocks_.reset();
-    set_positions(mesh.rest);
+    set_positions(mesh_->rest);
 }
 
 void DrawnMesh::set_positions(std::span<const glm::vec2> now) {
@@ -178,23 +177,22 @@ void DrawnMesh::set_attribute(GLuint location, std::span<const std::byte> values
 DrawnMesh::Level& DrawnMesh::level_for(int stride) {
     const auto found = std::ranges::find(levels_, stride, [](const Level& l) { return l.detail.stride; });
     if (found != levels_.end()) return *found;
-    Level& level = levels_.emplace_back(detail_of(mesh_, stride), make_buffer(), make_buffer());
+    Level& level = levels_.emplace_back(detail_of(*mesh_, stride), make_buffer(), make_buffer());
     glBindVertexArray(array_.name());
-    upload(GL_ELEMENT_ARRAY_BUFFER, level.triangles, std::as_bytes(std::span(level.detail.triangles)),
-           GL_STATIC_DRAW);
-    level.detail.triangles = {};
+    upload(GL_ELEMENT_ARRAY_BUFFER, level.triangles,
+           std::as_bytes(std::span(triangles_of(*mesh_, level.detail))), GL_STATIC_DRAW);
     return level;
 }
 
 const MeshBlocks* DrawnMesh::blocks() {
     if (held_.empty()) return nullptr;
-    if (!blocks_) blocks_ = blocks_of(mesh_, held_);
+    if (!blocks_) blocks_ = blocks_of(*mesh_, held_);
     return &*blocks_;
 }
 
 void DrawnMesh::draw(const View& view, Fineness fineness) {
     const MeshBlocks* now = blocks();
-    const int stride = fineness == Fineness::seen && whole_ ? stride_for(mesh_, now, view) : 1;
+    const int stride = fineness == Fineness::seen && whole_ ? stride_for(*mesh_, now, view) : 1;
     const Level& level = level_for(stride);
     std::vector<TriangleRun> runs{{0, level.detail.first.back()}};
     if (now) runs = visible_runs(level.detail, *now, view);
@@ -218,11 +216,11 @@ void DrawnMesh::draw_one() {
 }
 
 void DrawnMesh::draw_lines(const View& view) {
-    const int stride = whole_ ? stride_for(mesh_, blocks(), view) : 1;
+    const int stride = whole_ ? stride_for(*mesh_, blocks(), view) : 1;
     Level& level = level_for(stride);
     glBindVertexArray(array_.name());
     if (level.edge_count == 0) {
-        const auto edges = edges_of(detail_of(mesh_, stride).triangles, vertices_);
+        const auto edges = edges_of(triangles_of(*mesh_, level.detail), vertices_);
         upload(GL_ELEMENT_ARRAY_BUFFER, level.edges, std::as_bytes(std::span(edges)), GL_STATIC_DRAW);
         level.edge_count = edges.size();
     }

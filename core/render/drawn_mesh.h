@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,7 +28,7 @@ class DrawnMesh {
     DrawnMesh();
 
     /// At rest, until it is moved. Lets go of the weights: they were another mesh's.
-    void set_mesh(const Mesh& mesh);
+    void set_mesh(std::shared_ptr<const Mesh> mesh);
 
     /// As the processor moved it. Uploads the run from the first to the last vertex that changed; nothing if
     /// none did. now: #vertices, image pixels, or none: nothing is changed
@@ -63,7 +64,7 @@ class DrawnMesh {
 
     /// The mesh, or a coarser one, as the driver has it.
     struct Level {
-        MeshDetail detail;  ///< without its triangles
+        MeshDetail detail;
         GlBuffer triangles, edges;
         std::size_t edge_count = 0;  ///< 0 before the first time
     };
@@ -78,8 +79,8 @@ class DrawnMesh {
     Target nowhere_;
     std::vector<glm::vec2> held_;       ///< what `now_` holds; empty where that is not known
     std::optional<MeshBlocks> blocks_;  ///< of `held_`, once there was need of them
-    Mesh mesh_;
-    bool whole_ = false;  ///< as is_whole says
+    std::shared_ptr<const Mesh> mesh_;  ///< null before the first one
+    bool whole_ = false;                ///< as is_whole says
     std::vector<Level> levels_;
     std::size_t vertices_ = 0, weight_count_ = 0, uploaded_ = 0, drawn_ = 0;
 };

@@ -77,7 +77,7 @@ bool is_whole(const Mesh& mesh) {
 int stride_for(const Mesh& mesh, const MeshBlocks* blocks, const View& view) {
     // A line through cells of a few pixels bends by hundredths of a pixel; where the picture is stretched it
     // is straighter still.
-    constexpr double usual = 3, widest = 8;  // target pixels
+    constexpr double usual = 4, widest = 10;  // target pixels
     const glm::dvec2 scale = view.scale;
     double cell = std::max(mesh.size.x / mesh.columns * scale.x, mesh.size.y / mesh.rows * scale.y);
     double stretched = cell;
@@ -95,7 +95,7 @@ int stride_for(const Mesh& mesh, const MeshBlocks* blocks, const View& view) {
 }
 
 MeshDetail detail_of(const Mesh& mesh, int stride) {
-    if (stride == 1) return {1, mesh.columns, mesh.rows, mesh.triangles, mesh.first_triangle};
+    if (stride == 1) return {1, mesh.columns, mesh.rows, {}, mesh.first_triangle};
     assert(is_whole(mesh) && block_cells % stride == 0);
     MeshDetail detail{
         stride, (mesh.columns + stride - 1) / stride, (mesh.rows + stride - 1) / stride, {}, {}};
@@ -103,6 +103,9 @@ MeshDetail detail_of(const Mesh& mesh, int stride) {
         const int x = std::min(column * stride, mesh.columns), y = std::min(row * stride, mesh.rows);
         return mesh.grid[std::size_t(y) * std::size_t(mesh.columns + 1) + std::size_t(x)];
     };
+    const std::size_t cells = std::size_t(detail.columns) * std::size_t(detail.rows);
+    detail.triangles.reserve(cells * 6);
+    detail.first.reserve(cells + 1);
     for (int y = 0; y < detail.rows; ++y)
         for (int x = 0; x < detail.columns; ++x) {
             detail.first.push_back(std::uint32_t(detail.triangles.size() / 3));

@@ -41,12 +41,17 @@ int stride_for(const Mesh& mesh, const MeshBlocks* blocks, const View& view);
 struct MeshDetail {
     int stride = 1;
     int columns = 0, rows = 0;             ///< cells
-    std::vector<std::uint32_t> triangles;  ///< #triangles x 3, row by row as the mesh has them
+    std::vector<std::uint32_t> triangles;  ///< as triangles_of; none where the mesh has them itself
     std::vector<std::uint32_t> first;      ///< rows x columns + 1: the first triangle of each cell
 };
 
 /// stride: 1, for the mesh as it is, or of a whole mesh a power of two up to block_cells
 MeshDetail detail_of(const Mesh& mesh, int stride);
+
+/// #triangles x 3, row by row. detail: of this mesh
+inline std::span<const std::uint32_t> triangles_of(const Mesh& mesh, const MeshDetail& detail) {
+    return detail.stride == 1 ? mesh.triangles : detail.triangles;
+}
 
 /// Triangles [first, first + count).
 struct TriangleRun {

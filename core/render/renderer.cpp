@@ -74,8 +74,8 @@ void Renderer::set_picture(PictureTexture picture) {
     }
 }
 
-void Renderer::set_mesh(const Mesh& mesh) {
-    mesh_.set_mesh(mesh);
+void Renderer::set_mesh(std::shared_ptr<const Mesh> mesh) {
+    mesh_.set_mesh(std::move(mesh));
     moved_ = false;
     overlay_style_.reset();
 }

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -53,7 +54,7 @@ class Renderer {
     void set_picture(PictureTexture picture);
     /// Whether the picture is, everywhere.
     bool is_opaque() const { return picture_.opaque; }
-    void set_mesh(const Mesh& mesh);
+    void set_mesh(std::shared_ptr<const Mesh> mesh);
     /// The mesh as the processor deformed it. now: #vertices of the mesh, image pixels. Where it has not
     /// `moved`, all of the picture is drawn as it is, with the cells that the mesh leaves out.
     void set_positions(std::span<const glm::vec2> now, bool moved);

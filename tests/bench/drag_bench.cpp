@@ -55,7 +55,7 @@ struct Scene {
         }
         update(deformation, document);
         renderer.set_picture(upload_picture(document.picture->image));
-        renderer.set_mesh(mesh_of(deformation));
+        renderer.set_mesh(deformation.binding->mesh);
         renderer.set_positions(deformation.now, deformation.moved);
         renderer.set_weights(weights_of(deformation));
     }

@@ -238,7 +238,7 @@ void draw_by_processor(benchmark::State& state) {
     state.SetLabel(renderer_name());
     Renderer renderer;
     renderer.set_picture(upload_picture(deformation.source.picture->image));
-    renderer.set_mesh(mesh_of(deformation));
+    renderer.set_mesh(deformation.binding->mesh);
     renderer.set_positions(deformation.now, deformation.moved);
     DriverDrawing by_driver(renderer, view, {});
     compare(

@@ -139,7 +139,7 @@ Image exported(Renderer& renderer, const Deformation& deformation) {
 /// A renderer that holds a document's picture and its deformed mesh.
 void prepare(Renderer& renderer, const Document& document, const Deformation& deformation) {
     renderer.set_picture(upload_picture(document.picture->image));
-    renderer.set_mesh(mesh_of(deformation));
+    renderer.set_mesh(deformation.binding->mesh);
     renderer.set_positions(deformation.now, deformation.moved);
 }
 
@@ -169,7 +169,7 @@ void expect_shader_deforms_as_the_processor(const char* backend) {
         update(deformation, document);
         EXPECT_EQ(deformation.cancelled > 0, probes == 3);
         renderer.set_picture(upload_picture(document.picture->image));
-        renderer.set_mesh(mesh_of(deformation));
+        renderer.set_mesh(deformation.binding->mesh);
         renderer.set_weights(weights_of(deformation));
         renderer.set_pose(deformation.transformations, {128, 128});
         const Image shader = exported(renderer, deformation);
@@ -249,7 +249,7 @@ TEST(VertexShader, KeepsNoWeightsOfTheMeshBeforeNorWhereItIsGivenNone) {
     const auto bytes = std::int64_t(weights_of(deformation).size_bytes());
     renderer.set_weights(weights_of(deformation));
     EXPECT_EQ(buffered_bytes(), without + bytes);
-    renderer.set_mesh(mesh_of(deformation));
+    renderer.set_mesh(deformation.binding->mesh);
     EXPECT_EQ(buffered_bytes(), without);
     renderer.set_weights(weights_of(deformation));
     renderer.set_weights({});
@@ -329,7 +329,7 @@ TEST(Upload, IsOfTheVerticesThatMovedAndNothingElse) {
     update(deformation, document);
     Renderer renderer;
     renderer.set_picture(upload_picture(document.picture->image));
-    renderer.set_mesh(mesh_of(deformation));
+    renderer.set_mesh(deformation.binding->mesh);
     constexpr std::size_t a_vertex = 2 * sizeof(float);
     const auto handed_over = [&](std::span<const glm::vec2> now) {
         const std::size_t before = renderer.uploaded();
@@ -357,7 +357,7 @@ TEST(Upload, IsOfTheVerticesThatMovedAndNothingElse) {
     }
     Renderer other;
     other.set_picture(upload_picture(document.picture->image));
-    other.set_mesh(mesh_of(deformation));
+    other.set_mesh(deformation.binding->mesh);
     other.set_positions(now, true);
     const Image drawn = exported(renderer, deformation);
     EXPECT_EQ(drawn.rgba, exported(other, deformation).rgba);
@@ -392,7 +392,7 @@ TEST(Sampling, AWholePixelShiftIsExactAlsoWhereVerticesAreRounded) {
     const auto context = open_context("osmesa");
     Renderer renderer;
     renderer.set_picture(upload_picture(document.picture->image));
-    renderer.set_mesh(mesh_of(deformation));
+    renderer.set_mesh(deformation.binding->mesh);
     renderer.set_positions(deformation.now, deformation.moved);
     const Image shifted = exported(renderer, deformation);
     int wrong = 0;
