@@ -59,8 +59,8 @@ struct Scene {
         renderer.set_positions(deformation.now, deformation.moved);
         renderer.set_weights(weights_of(deformation));
     }
-    void draw() {
-        renderer.draw(view, 1, false, 0, Fineness::seen);
+    void draw(Fineness fineness = Fineness::seen) {
+        renderer.draw(view, 1, false, 0, fineness);
         renderer.display(view, {}, 12, false);
         glFinish();
     }
@@ -111,6 +111,21 @@ void meshes(benchmark::internal::Benchmark* b) {
 }
 BENCHMARK(drag_frame_by_processor)->Apply(meshes);
 BENCHMARK(drag_frame_by_shader)->Apply(meshes);
+
+/// How many times as long all triangles would take as those that the window draws.
+void drawing_as_seen(benchmark::State& state) {
+    Scene scene(int(state.range(0)));
+    for (const Fineness fineness : {Fineness::seen, Fineness::all}) scene.draw(fineness);
+    double seen = 0, all = 0;
+    for (auto _ : state) {
+        const double one = seconds([&] { scene.draw(); });
+        seen += one;
+        all += seconds([&] { scene.draw(Fineness::all); });
+        state.SetIterationTime(one);
+    }
+    state.counters["times_all"] = all / seen;
+}
+BENCHMARK(drawing_as_seen)->Apply(meshes);
 
 }  // namespace
 }  // namespace probewarp

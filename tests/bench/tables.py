@@ -44,6 +44,7 @@ OTHERS = [
     ("first frame with a picture, ms", "start_to_picture", "real_time", ""),
     ("frame of a drag over drawing alone, 100 cells", "drag_frame_by_processor/100", "over_drawing", "1"),
     ("frame of a drag over drawing alone, 1000 cells", "drag_frame_by_processor/1000", "over_drawing", "1"),
+    ("drawing all of 1000 cells, over what the window draws", "drawing_as_seen/1000", "times_all", ""),
 ]
 
 # One benchmark for each scheme follows the slash.
