@@ -20,11 +20,10 @@ void add_task(Editor& editor, std::string label, std::function<Document(const De
         return;
     }
     editor.tasks.push_back(
-        {std::move(label), [before = std::make_shared<const Deformation>(editor.deformation),
+        {std::move(label), [deformation = std::make_shared<Deformation>(editor.deformation),
                             document = editor.document, work = std::move(work)] {
-             Deformation deformation = *before;
-             pose(deformation, document, deformation.binding);
-             return work(deformation);
+             pose(*deformation, document, deformation->binding);
+             return work(*deformation);
          }});
 }
 

@@ -114,14 +114,16 @@ void fall_at(Editor& editor, PaintStroke& stroke, glm::dvec2 point) {
 /// Why the chosen probe cannot be painted; empty where it can.
 std::string why_not(const Editor& editor) {
     const Deformation& deformation = editor.deformation;
-    // What a stroke adds to is what the vertices have before it.
-    if (!fits(deformation.binding.get(), editor.document) || refining_work(deformation, editor.document) > 0)
-        return "The weights are still being worked out.";
+    constexpr const char* wait = "The weights are still being worked out.";
+    if (!fits(deformation.binding.get(), editor.document)) return wait;
     if (paints_stiffness(editor)) return {};
     const Probe* probe = find_probe(editor.document, editor.selected);
     if (!probe) return "Choose a probe to paint, in the list or with Alt+click.";
     if (probe->locked) return probe->name + " is locked. Unlock it in the list to paint it.";
-    return {};
+    // A stroke adds to the shares that the vertices have before it.
+    const bool settled = is_bound(deformation.binding.get(), editor.document) &&
+                         refining_work(deformation, editor.document) == 0;
+    return settled ? "" : wait;
 }
 
 void begin_stroke(Editor& editor, const PointerEvent& event) {

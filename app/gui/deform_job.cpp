@@ -40,6 +40,7 @@ void start(App& app) {
             ~WakeUp() { glfwPostEmptyEvent(); }
         } wake_up;
         const auto binding = present ? present : make_binding(job.document, before, &job.given_up);
+        job.bound = true;
         const auto start = Clock::now();
         Deformation made;
         pose(made, job.document, binding);
@@ -50,7 +51,7 @@ void start(App& app) {
 
 /// The job failed: it is not tried again before something changes that may help.
 void remember_failure(App& app, const DeformJob& job, const std::string& reason) {
-    app.failure = {job.document, job.binds, reason};
+    app.failure = {job.document, !job.bound, reason};
     say(app, Tone::error, reason);
 }
 
@@ -99,9 +100,11 @@ bool wants_job(const App& app) {
     return app.abandoned_jobs.size() < 2 && !fails(app);
 }
 
-/// What was replaced meanwhile is not worth waiting for; a probe that is still being dragged is.
+/// What was replaced or undone meanwhile is not worth waiting for; a probe that is still being dragged is.
 bool is_outdated(const DeformJob& job, const Editor& editor) {
-    return !same_means(job.document, editor.document) || (!job.binds && !present_binding(editor));
+    if (!same_means(job.document, editor.document)) return true;
+    if (job.binds) return false;
+    return !present_binding(editor) || refining_work(editor.deformation, editor.document) <= refined_at_once;
 }
 
 }  // namespace

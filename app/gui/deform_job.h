@@ -18,6 +18,7 @@ struct DeformJob {
     Document document;   ///< what is being deformed
     bool binds = false;  ///< whether it makes a binding, rather than only what follows from one
     std::atomic<bool> given_up = false;
+    bool bound = false;  ///< whether there is a binding; to be looked at when it has ended
     std::future<Deformation> result;
     double milliseconds = 0;  ///< what deforming took, without the binding; there with the result
     double since = 0;         ///< seconds of ImGui's clock

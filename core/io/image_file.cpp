@@ -7,6 +7,7 @@
 
 #include "io/file.h"
 #include "io/formats.h"
+#include "io/naming_errors.h"
 #include "io/printable.h"
 #include "io/row_reader.h"
 

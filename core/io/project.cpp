@@ -10,6 +10,7 @@
 
 #include "io/file.h"
 #include "io/image_file.h"
+#include "io/naming_errors.h"
 #include "io/paint_file.h"
 #include "io/printable.h"
 #include "io/zip_archive.h"

@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "io/printable.h"
+#include "io/naming_errors.h"
 
 namespace probewarp {
 

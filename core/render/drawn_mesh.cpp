@@ -92,7 +92,7 @@ void DrawnMesh::set_mesh(std::shared_ptr<const Mesh> mesh) {
     levels_.clear();
     if (weight_count_ > 0) set_weights({});
     held_.clear();
-    blocks_.reset();
+    forget_blocks();
     set_positions(mesh_->rest);
 }
 
@@ -110,7 +110,7 @@ void DrawnMesh::set_positions(std::span<const glm::vec2> now) {
                         bytes.data());
         uploaded_ += bytes.size();
     }
-    if (run.count > 0) blocks_.reset();
+    if (run.count > 0) forget_blocks();
     held_.resize(now.size());
     std::copy_n(now.begin() + std::ptrdiff_t(run.first), run.count,
                 held_.begin() + std::ptrdiff_t(run.first));
@@ -161,7 +161,7 @@ void DrawnMesh::move(std::span<const DualComplex<float>> transformations, glm::v
     glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     held_.clear();
-    blocks_.reset();
+    forget_blocks();
     check_gl("moving the mesh");
 }
 
@@ -181,6 +181,7 @@ DrawnMesh::Level& DrawnMesh::level_for(int stride) {
     glBindVertexArray(array_.name());
     upload(GL_ELEMENT_ARRAY_BUFFER, level.triangles,
            std::as_bytes(std::span(triangles_of(*mesh_, level.detail))), GL_STATIC_DRAW);
+    check_gl("uploading the triangles");
     return level;
 }
 
@@ -190,9 +191,21 @@ const MeshBlocks* DrawnMesh::blocks() {
     return &*blocks_;
 }
 
-void DrawnMesh::draw(const View& view, Fineness fineness) {
+void DrawnMesh::forget_blocks() {
+    blocks_.reset();
+    errors_.clear();
+}
+
+int DrawnMesh::stride_for_view(const View& view, double largest_side) {
     const MeshBlocks* now = blocks();
-    const int stride = fineness == Fineness::seen && whole_ ? stride_for(*mesh_, now, view) : 1;
+    if (!now || !whole_ || !may_be_coarser(*mesh_, view, largest_side)) return 1;
+    if (errors_.empty()) errors_ = stride_errors(*mesh_, held_);
+    return stride_for(*mesh_, *now, errors_, view, largest_side);
+}
+
+void DrawnMesh::draw(const View& view, Fineness fineness, double largest_side) {
+    const MeshBlocks* now = blocks();
+    const int stride = fineness == Fineness::seen ? stride_for_view(view, largest_side) : 1;
     const Level& level = level_for(stride);
     std::vector<TriangleRun> runs{{0, level.detail.first.back()}};
     if (now) runs = visible_runs(level.detail, *now, view);
@@ -215,9 +228,8 @@ void DrawnMesh::draw_one() {
     glDrawElements(GL_TRIANGLES, 3, GL_UNSIGNED_INT, nullptr);
 }
 
-void DrawnMesh::draw_lines(const View& view) {
-    const int stride = whole_ ? stride_for(*mesh_, blocks(), view) : 1;
-    Level& level = level_for(stride);
+void DrawnMesh::draw_lines(const View& view, double largest_side) {
+    Level& level = level_for(stride_for_view(view, largest_side));
     glBindVertexArray(array_.name());
     if (level.edge_count == 0) {
         const auto edges = edges_of(triangles_of(*mesh_, level.detail), vertices_);

@@ -44,12 +44,13 @@ class DrawnMesh {
     /// One more attribute, of `components` floats a vertex. values: #vertices x components floats
     void set_attribute(GLuint location, std::span<const std::byte> values, int components);
 
-    /// Draws what may show in the view. Where the mesh folds, a later triangle lies over an earlier one.
-    void draw(const View& view, Fineness fineness);
+    /// Draws what may show in the view; larger triangles only where their sides are not longer than that many
+    /// target pixels. Where the mesh folds, a later triangle lies over an earlier one.
+    void draw(const View& view, Fineness fineness, double largest_side);
     /// The first triangle alone.
     void draw_one();
-    /// Each edge once, as fine as Fineness::seen.
-    void draw_lines(const View& view);
+    /// Each edge once, as Fineness::seen.
+    void draw_lines(const View& view, double largest_side);
 
     /// Triangles of the last draw: for tests.
     std::size_t drawn() const { return drawn_; }
@@ -71,6 +72,8 @@ class DrawnMesh {
     Level& level_for(int stride);
     /// Null where it is not known where the mesh is now.
     const MeshBlocks* blocks();
+    int stride_for_view(const View& view, double largest_side);
+    void forget_blocks();
 
     GlVertexArray array_, rest_array_;  ///< all attributes; the rest alone
     GlBuffer rest_, now_, more_, weights_, transformations_;
@@ -79,6 +82,7 @@ class DrawnMesh {
     Target nowhere_;
     std::vector<glm::vec2> held_;       ///< what `now_` holds; empty where that is not known
     std::optional<MeshBlocks> blocks_;  ///< of `held_`, once there was need of them
+    std::vector<StrideErrors> errors_;  ///< likewise
     std::shared_ptr<const Mesh> mesh_;  ///< null before the first one
     bool whole_ = false;                ///< as is_whole says
     std::vector<Level> levels_;

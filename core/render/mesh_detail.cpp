@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 namespace probewarp {
 
@@ -32,15 +35,21 @@ Box box_of(const Mesh& mesh, std::span<const glm::vec2> now, int column, int row
     return box;
 }
 
-/// A probe's own vertex is in a cell, or on the side of two.
-void take_in_own(const Mesh& mesh, std::uint32_t vertex, glm::vec2 now, MeshBlocks& blocks) {
+/// Calls visit(block) for each block that a probe's own vertex there may be of: it is in a cell, or on the
+/// side of two. rest: image pixels
+template <class Visit>
+void for_blocks_at(const Mesh& mesh, glm::vec2 rest, const Visit& visit) {
     const auto cell = [](float at, double size, int cells) { return int(double(at) / size * cells); };
-    const int x = cell(mesh.rest[vertex].x, mesh.size.x, mesh.columns);
-    const int y = cell(mesh.rest[vertex].y, mesh.size.y, mesh.rows);
-    const auto block = [](int at, int cells) { return std::clamp(at, 0, cells - 1) / block_cells; };
-    for (const int row : {block(y - 1, mesh.rows), block(y + 1, mesh.rows)})
-        for (const int column : {block(x - 1, mesh.columns), block(x + 1, mesh.columns)})
-            take_in(blocks.boxes[std::size_t(row) * std::size_t(blocks.columns) + std::size_t(column)], now);
+    const int x = cell(rest.x, mesh.size.x, mesh.columns), y = cell(rest.y, mesh.size.y, mesh.rows);
+    const auto blocks = [](int at, int cells) {
+        const auto block = [cells](int of) { return std::clamp(of, 0, cells - 1) / block_cells; };
+        return std::pair(block(at - 1), block(at + 1));
+    };
+    const auto [top, bottom] = blocks(y, mesh.rows);
+    const auto [left, right] = blocks(x, mesh.columns);
+    for (int row = top; row <= bottom; ++row)
+        for (int column = left; column <= right; ++column)
+            visit(std::size_t(row) * std::size_t(blocks_along(mesh.columns)) + std::size_t(column));
 }
 
 /// Image pixels.
@@ -65,7 +74,9 @@ MeshBlocks blocks_of(const Mesh& mesh, std::span<const glm::vec2> now) {
                 box_of(mesh, now, column, row);
     });
     for (const std::uint32_t vertex : mesh.anchors)
-        if (vertex != no_vertex) take_in_own(mesh, vertex, now[vertex], blocks);
+        if (vertex != no_vertex)
+            for_blocks_at(mesh, mesh.rest[vertex],
+                          [&](std::size_t block) { take_in(blocks.boxes[block], now[vertex]); });
     return blocks;
 }
 
@@ -74,24 +85,122 @@ bool is_whole(const Mesh& mesh) {
            mesh.first_triangle.end();
 }
 
-int stride_for(const Mesh& mesh, const MeshBlocks* blocks, const View& view) {
-    // A line through cells of a few pixels bends by hundredths of a pixel; where the picture is stretched it
-    // is straighter still.
-    constexpr double usual = 4, widest = 10;  // target pixels
-    const glm::dvec2 scale = view.scale;
-    double cell = std::max(mesh.size.x / mesh.columns * scale.x, mesh.size.y / mesh.rows * scale.y);
-    double stretched = cell;
-    if (blocks) {
-        const Box seen = box_of(view);
-        for (const Box& box : blocks->boxes)
-            if (meet(box, seen))
-                stretched = std::max({stretched, double(box.most.x - box.least.x) * scale.x / block_cells,
-                                      double(box.most.y - box.least.y) * scale.y / block_cells});
+namespace {
+
+/// A cell of a coarser grid: its corners, and where in it a place of the finer one is, [0, 1].
+struct CoarseCell {
+    int left, top, right, bottom;
+    float x, y;
+};
+
+/// The place of the grid where stride's triangles have no vertex of their own.
+CoarseCell coarse_cell(const Mesh& mesh, int x, int y, int stride) {
+    const auto along = [stride](int at, int cells) {
+        const int first = at == cells ? at : at / stride * stride;
+        const int end = at == first ? first : std::min(first + stride, cells);
+        return std::array{first, end};
+    };
+    const auto [left, right] = along(x, mesh.columns);
+    const auto [top, bottom] = along(y, mesh.rows);
+    const auto part = [](int at, int first, int end) {
+        return first == end ? 0.0f : float(at - first) / float(end - first);
+    };
+    return {left, top, right, bottom, part(x, left, right), part(y, top, bottom)};
+}
+
+/// Where the cell's two triangles, cut from the top-left corner to the bottom-right one, have that place.
+glm::vec2 on_triangles(const Mesh& mesh, std::span<const glm::vec2> now, const CoarseCell& cell) {
+    const auto at = [&](int x, int y) {
+        return now[mesh.grid[std::size_t(y) * std::size_t(mesh.columns + 1) + std::size_t(x)]];
+    };
+    const glm::vec2 first = at(cell.left, cell.top), last = at(cell.right, cell.bottom);
+    if (cell.x > cell.y)
+        return first * (1 - cell.x) + at(cell.right, cell.top) * (cell.x - cell.y) + last * cell.y;
+    return first * (1 - cell.y) + at(cell.left, cell.bottom) * (cell.y - cell.x) + last * cell.x;
+}
+
+/// Adds, stride by stride, how far the vertices that are left out are from the next triangles.
+StrideErrors errors_of(const Mesh& mesh, std::span<const glm::vec2> now, int column, int row) {
+    const int right = std::min((column + 1) * block_cells, mesh.columns);
+    const int bottom = std::min((row + 1) * block_cells, mesh.rows);
+    const auto has = [](int at, int cells, int stride) { return at % stride == 0 || at == cells; };
+    StrideErrors errors{};
+    for (std::size_t i = 1; i < errors.size(); ++i) {
+        const int stride = 1 << i, finer = stride / 2;
+        float squared = 0;
+        for (int y = row * block_cells; y <= bottom; ++y) {
+            if (!has(y, mesh.rows, finer)) continue;
+            for (int x = column * block_cells; x <= right; ++x) {
+                if (!has(x, mesh.columns, finer)) continue;
+                if (has(x, mesh.columns, stride) && has(y, mesh.rows, stride)) continue;
+                const auto vertex =
+                    mesh.grid[std::size_t(y) * std::size_t(mesh.columns + 1) + std::size_t(x)];
+                const glm::vec2 off = now[vertex] - on_triangles(mesh, now, coarse_cell(mesh, x, y, stride));
+                squared = std::max(squared, glm::dot(off, off));
+            }
+        }
+        errors[i] = errors[i - 1] + std::sqrt(squared);
     }
-    int stride = 1;
-    while (stride < block_cells && cell * stride * 2 <= usual && stretched * stride * 2 <= widest)
-        stride *= 2;
-    return stride;
+    return errors;
+}
+
+/// A probe's own vertex, which no stride but 1 has.
+float error_of_own(const Mesh& mesh, std::span<const glm::vec2> now, std::uint32_t vertex) {
+    const glm::dvec2 at = glm::dvec2(mesh.rest[vertex]) / mesh.size * glm::dvec2(mesh.columns, mesh.rows);
+    const int x = std::clamp(int(at.x), 0, mesh.columns - 1), y = std::clamp(int(at.y), 0, mesh.rows - 1);
+    const CoarseCell cell{x, y, x + 1, y + 1, float(at.x - x), float(at.y - y)};
+    return glm::distance(now[vertex], on_triangles(mesh, now, cell));
+}
+
+}  // namespace
+
+std::vector<StrideErrors> stride_errors(const Mesh& mesh, std::span<const glm::vec2> now) {
+    assert(is_whole(mesh) && now.size() == mesh.rest.size());
+    const int columns = blocks_along(mesh.columns), rows = blocks_along(mesh.rows);
+    std::vector<StrideErrors> errors(std::size_t(columns) * std::size_t(rows));
+    oneapi::tbb::parallel_for(0, rows, [&](int row) {
+        for (int column = 0; column < columns; ++column)
+            errors[std::size_t(row) * std::size_t(columns) + std::size_t(column)] =
+                errors_of(mesh, now, column, row);
+    });
+    for (const std::uint32_t vertex : mesh.anchors) {
+        if (vertex == no_vertex) continue;
+        const float own = error_of_own(mesh, now, vertex);
+        for_blocks_at(mesh, mesh.rest[vertex], [&](std::size_t block) {
+            for (std::size_t i = 1; i < errors[block].size(); ++i)
+                errors[block][i] = std::max(errors[block][i], own);
+        });
+    }
+    return errors;
+}
+
+namespace {
+
+/// Target pixels, at rest.
+double cell_side(const Mesh& mesh, const View& view) {
+    return std::max(mesh.size.x / mesh.columns * view.scale.x, mesh.size.y / mesh.rows * view.scale.y);
+}
+
+}  // namespace
+
+bool may_be_coarser(const Mesh& mesh, const View& view, double largest) {
+    return cell_side(mesh, view) * 2 <= largest;
+}
+
+int stride_for(const Mesh& mesh, const MeshBlocks& blocks, std::span<const StrideErrors> errors,
+               const View& view, double largest) {
+    constexpr float nobody_sees = 0.25f;  // target pixels
+    const Box seen = box_of(view);
+    const double cell = cell_side(mesh, view), scale = std::max(view.scale.x, view.scale.y);
+    StrideErrors worst{};
+    for (std::size_t block = 0; block < blocks.boxes.size(); ++block)
+        if (meet(blocks.boxes[block], seen))
+            for (std::size_t i = 0; i < worst.size(); ++i) worst[i] = std::max(worst[i], errors[block][i]);
+    std::size_t i = 0;
+    while (i + 1 < worst.size() && cell * double(2 << i) <= largest &&
+           double(worst[i + 1]) * scale <= nobody_sees)
+        ++i;
+    return 1 << i;
 }
 
 MeshDetail detail_of(const Mesh& mesh, int stride) {

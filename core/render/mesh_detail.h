@@ -2,6 +2,7 @@
 // the screen, those of every second, fourth ... line of its grid in place of all.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -33,9 +34,20 @@ MeshBlocks blocks_of(const Mesh& mesh, std::span<const glm::vec2> now);
 /// Whether no cell is left out, as it takes to draw a mesh coarser.
 bool is_whole(const Mesh& mesh);
 
+/// How far a whole mesh's vertices are from the triangles of each stride of detail_of, 1, 2, 4 ...
+/// block_cells: image pixels, at most
+using StrideErrors = std::array<float, 6>;
+
+/// #blocks, row by row. now: #vertices, image pixels
+std::vector<StrideErrors> stride_errors(const Mesh& mesh, std::span<const glm::vec2> now);
+
 /// Of how many lines of a whole mesh's grid one is enough, so that nobody sees it: a power of two, at most
-/// block_cells. blocks: of where it is now, or null, where that is not known
-int stride_for(const Mesh& mesh, const MeshBlocks* blocks, const View& view);
+/// block_cells. errors: of its blocks; largest: target pixels, of a triangle's side
+int stride_for(const Mesh& mesh, const MeshBlocks& blocks, std::span<const StrideErrors> errors,
+               const View& view, double largest);
+
+/// Whether any stride but 1 is within the largest side.
+bool may_be_coarser(const Mesh& mesh, const View& view, double largest);
 
 /// The triangles of every stride-th line of the grid, without the probes' own vertices.
 struct MeshDetail {

@@ -22,6 +22,10 @@ void set(const GlProgram& program, const char* name, glm::vec4 v) {
 void set(const GlProgram& program, const char* name, float v) { glUniform1f(uniform(program, name), v); }
 void set(const GlProgram& program, const char* name, int v) { glUniform1i(uniform(program, name), v); }
 
+/// Target pixels that larger triangles may have in place of several; what an overlay shows has edges of its
+/// own, for which it is half of that.
+constexpr double largest_side = 4;
+
 /// The window's toolkit shares the context: what we rely on is set anew each time.
 /// Left of `first_column` the target stays as it is.
 void begin(const Target& target, int first_column = 0) {
@@ -137,7 +141,7 @@ void Renderer::draw(const View& view, int samples, bool with_overlay, int first_
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     if (moved_ || with_overlay)
-        mesh_.draw(view, fineness);
+        mesh_.draw(view, fineness, with_overlay ? largest_side / 2 : largest_side);
     else
         draw_picture();
     glDisable(GL_BLEND);
@@ -220,7 +224,7 @@ void Renderer::draw_lines(const View& view, glm::vec4 colour) {
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    mesh_.draw_lines(view);
+    mesh_.draw_lines(view, largest_side);
     glDisable(GL_BLEND);
 }
 
