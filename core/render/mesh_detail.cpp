@@ -163,14 +163,16 @@ std::vector<StrideErrors> stride_errors(const Mesh& mesh, std::span<const glm::v
             errors[std::size_t(row) * std::size_t(columns) + std::size_t(column)] =
                 errors_of(mesh, now, column, row);
     });
+    // From a probe's own vertex to the grid's triangles, and on to the larger ones.
+    std::vector<float> own(errors.size());
     for (const std::uint32_t vertex : mesh.anchors) {
         if (vertex == no_vertex) continue;
-        const float own = error_of_own(mesh, now, vertex);
-        for_blocks_at(mesh, mesh.rest[vertex], [&](std::size_t block) {
-            for (std::size_t i = 1; i < errors[block].size(); ++i)
-                errors[block][i] = std::max(errors[block][i], own);
-        });
+        const float error = error_of_own(mesh, now, vertex);
+        for_blocks_at(mesh, mesh.rest[vertex],
+                      [&](std::size_t block) { own[block] = std::max(own[block], error); });
     }
+    for (std::size_t block = 0; block < errors.size(); ++block)
+        for (std::size_t i = 1; i < errors[block].size(); ++i) errors[block][i] += own[block];
     return errors;
 }
 
