@@ -144,7 +144,7 @@ void render_picture(const RenderOptions& o, const ImageFormat& format, const Def
         wait_for_rows(picture, picture.image.height);  // what does not show must be sound too
         return drawn;
     });
-    if (picture.arriving) {
+    if (picture.arriving) {  // drawing waited for what was decoded beside it
         const auto [decoding, waiting] = picture.arriving->times();
         timings.add(Stage::decode, decoding);
         timings.add(Stage::draw, -waiting);
