@@ -284,9 +284,7 @@ std::unique_ptr<RowReader> read_jpeg_rows(Bytes bytes) { return std::make_unique
 
 Image decode_jpeg(Bytes bytes) {
     JpegReader reader(bytes);
-    Image image = reader.blank();
-    read_all(reader, image);
-    return image;
+    return read_whole(reader);
 }
 
 // ---- writing ----

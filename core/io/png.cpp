@@ -220,9 +220,7 @@ std::unique_ptr<RowReader> read_png_rows(Bytes bytes) { return std::make_unique<
 
 Image decode_png(Bytes bytes) {
     PngReader reader(bytes);
-    Image image = reader.blank();
-    read_all(reader, image);
-    return image;
+    return read_whole(reader);
 }
 
 }  // namespace probewarp

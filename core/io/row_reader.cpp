@@ -103,6 +103,12 @@ void read_all(RowReader& reader, Image& image) {
     while (reader.read(pixels) < image.height) continue;
 }
 
+Image read_whole(RowReader& reader) {
+    Image image = reader.blank();
+    read_all(reader, image);
+    return image;
+}
+
 std::shared_ptr<const ArrivingRows> read_beside(std::unique_ptr<RowReader> reader, Image& image,
                                                 const std::string& name) {
     return std::make_shared<const RowsReadBeside>(std::move(reader), image, name);
