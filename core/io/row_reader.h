@@ -28,8 +28,8 @@ void read_all(RowReader& reader, Image& image);
 /// Both at once.
 Image read_whole(RowReader& reader);
 
-/// read_all on a thread of its own, which ends with what is returned. Only the pixels must stay where they are
-/// meanwhile. name: what errors call it
+/// read_all on a thread of its own, which ends with what is returned. Only the pixels must stay where they
+/// are meanwhile. name: what errors call it
 std::shared_ptr<const ArrivingRows> read_beside(std::unique_ptr<RowReader> reader, Image& image,
                                                 const std::string& name);
 
