@@ -31,9 +31,8 @@ std::vector<std::string> names(const Rows& rows) {
 void add_backend(CLI::App& command, std::string& backend) {
     command
         .add_option("--backend", backend,
-                    "what draws: osmesa, egl, or auto: the processor, but for --heat and --deform shader the "
-                    "first of "
-                    "the two that works")
+                    "what draws: osmesa, egl, or auto: the processor, but for --heat and --deform shader "
+                    "the first of the two that works")
         ->check(CLI::IsMember({"auto", "osmesa", "egl"}))
         ->envname("PROBEWARP_BACKEND");
 }

@@ -192,10 +192,6 @@ int render_all(const RenderOptions& o, OutputFormat format, Timings& timings) {
         timings);
 }
 
-}  // namespace
-
-namespace {
-
 /// Bands of rows come and go: their memory is better used again than given back, and cleared, each time.
 void keep_freed_memory() {
 #ifdef M_MMAP_THRESHOLD
