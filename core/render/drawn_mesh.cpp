@@ -177,12 +177,12 @@ void DrawnMesh::set_attribute(GLuint location, std::span<const std::byte> values
 DrawnMesh::Level& DrawnMesh::level_for(int stride) {
     const auto found = std::ranges::find(levels_, stride, [](const Level& l) { return l.detail.stride; });
     if (found != levels_.end()) return *found;
-    Level& level = levels_.emplace_back(detail_of(*mesh_, stride), make_buffer(), make_buffer());
+    Level level{detail_of(*mesh_, stride), make_buffer(), make_buffer()};
     glBindVertexArray(array_.name());
     upload(GL_ELEMENT_ARRAY_BUFFER, level.triangles,
            std::as_bytes(std::span(triangles_of(*mesh_, level.detail))), GL_STATIC_DRAW);
     check_gl("uploading the triangles");
-    return level;
+    return levels_.emplace_back(std::move(level));
 }
 
 const MeshBlocks* DrawnMesh::blocks() {
