@@ -63,18 +63,13 @@ struct Refining {
 
 /// rebound: whether the deformation has another binding than that of its source
 Refining refining_for(const Deformation& d, const Document& document, bool rebound) {
-    const bool refined = is_refined(document);
-    if (rebound || refined != bool(d.refined)) {
-        // The first dab leaves most vertices with the automatic weights.
-        const bool in_runs = !rebound && refined && differ_by_vertex(d.source, document);
-        if (in_runs) return {false, changed_runs(d.source, document, mesh_of(d))};
-        return {refined || d.refined, {}};
-    }
-    if (!refined) return {};
+    if (!is_refined(document)) return {d.refined != nullptr, {}};
+    if (rebound) return {true, {}};
     if (differ_by_vertex(d.source, document)) return {false, changed_runs(d.source, document, mesh_of(d))};
-    const bool same = d.source.weights.most == document.weights.most &&
-                      d.source.stiffness == document.stiffness && same_locks(d.source, document);
-    return {!same || !repainted(d.source, document, mesh_of(d)).empty(), {}};
+    const bool same = d.refined && d.source.weights.most == document.weights.most &&
+                      d.source.stiffness == document.stiffness && same_locks(d.source, document) &&
+                      repainted(d.source, document, mesh_of(d)).empty();
+    return {!same, {}};
 }
 
 /// Works the weights of one run out.
