@@ -49,17 +49,21 @@ bool is_nearer(const Deformation& next, const Deformation& present, const Docume
 
 void take_next(Editor& editor) {
     std::optional<Deformation>& next = editor.next_deformation;
-    const bool strokes = editor.gesture && editor.gesture->stroke;
     if (!next) return;
     if (is_nearer(*next, editor.deformation, editor.document)) {
         // A stroke keeps the mesh that it began on.
-        if (strokes && next->binding != editor.deformation.binding) return;
+        if (is_stroking(editor) && next->binding != editor.deformation.binding) return;
         replace(editor.deformation, std::move(*next));
     }
     next.reset();
 }
 
 }  // namespace
+
+bool settles_at_once(const Editor& editor) {
+    constexpr std::size_t at_once = std::size_t{1} << 22;
+    return refining_work(editor.deformation, editor.document) <= at_once;
+}
 
 void refresh(Editor& editor) {
     if (!has_picture(editor) || defers_deformation(editor)) return;
@@ -68,8 +72,7 @@ void refresh(Editor& editor) {
     if (!editor.deforms_elsewhere) return update(deformation, editor.document, pace);
     take_next(editor);
     if (!fits(deformation.binding.get(), editor.document)) return;
-    if (refining_work(deformation, editor.document) <= refined_at_once)
-        return pose(deformation, editor.document, deformation.binding, pace);
+    if (settles_at_once(editor)) return pose(deformation, editor.document, deformation.binding, pace);
     // The weights are not there yet: those that are go on deforming.
     if (const auto shown = in_pose_of(deformation.source, editor.document))
         pose(deformation, *shown, deformation.binding, pace);

@@ -139,8 +139,9 @@ Probe* selected_probe(Editor& editor);
 /// Begins with another document: opened from `path` (a project) or from nothing.
 void start(Editor& editor, Document document, std::filesystem::path path, bool saved);
 
-/// Weights that refresh settles by itself where there is a window: some 20 ms.
-inline constexpr std::size_t refined_at_once = std::size_t{1} << 22;
+/// Whether refresh settles the weights by itself even where there is a window: it takes some 20 ms at most.
+/// Requires a binding that fits the document.
+bool settles_at_once(const Editor& editor);
 
 /// Brings the deformation up to date with the document, as far as that goes without the window's help. Called
 /// before drawing.

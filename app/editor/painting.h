@@ -37,6 +37,9 @@ inline constexpr double min_brush_radius = 0.5, max_brush_radius = 20000;  // im
 /// A sixteenth of the picture's longer side.
 double default_brush_radius(const Image& image);
 
+/// Whether a stroke is being painted.
+bool is_stroking(const Editor& editor);
+
 /// The brush or the pin.
 bool is_painting_tool(const Editor& editor);
 /// Whether strokes paint stiffness rather than a probe's weights.

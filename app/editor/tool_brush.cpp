@@ -38,6 +38,8 @@ std::span<const glm::vec2> shown_positions(const Editor& editor) {
     return stroke && !stroke->still.empty() ? stroke->still : editor.deformation.now;
 }
 
+bool is_stroking(const Editor& editor) { return editor.gesture && editor.gesture->stroke; }
+
 bool defers_deformation(const Editor& editor) {
     const PaintStroke* stroke = editor.gesture ? editor.gesture->stroke.get() : nullptr;
     return stroke && stroke->layer.probe == 0 && !stroke->still.empty();

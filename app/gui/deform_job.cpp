@@ -17,14 +17,12 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-bool strokes(const Editor& editor) { return editor.gesture && editor.gesture->stroke; }
-
 /// The binding that the document's weights are settled on: its own, or during a stroke the one that this
 /// began on. Null where there is none yet.
 std::shared_ptr<const Binding> present_binding(const Editor& editor) {
     const auto& binding = editor.deformation.binding;
     const bool serves =
-        strokes(editor) ? fits(binding.get(), editor.document) : is_bound(binding.get(), editor.document);
+        is_stroking(editor) ? fits(binding.get(), editor.document) : is_bound(binding.get(), editor.document);
     return serves ? binding : nullptr;
 }
 
@@ -92,8 +90,8 @@ bool wants_job(const App& app) {
     const Editor& editor = app.editor;
     if (!has_picture(editor) || defers_deformation(editor) || editor.next_deformation) return false;
     if (present_binding(editor)) {
-        if (refining_work(editor.deformation, editor.document) <= refined_at_once) return false;
-    } else if (strokes(editor)) {
+        if (settles_at_once(editor)) return false;
+    } else if (is_stroking(editor)) {
         return false;  // a stroke keeps the mesh that it began on
     }
     // One that cannot be interrupted where it is may still have all its memory: not one more each time.
@@ -104,7 +102,7 @@ bool wants_job(const App& app) {
 bool is_outdated(const DeformJob& job, const Editor& editor) {
     if (!same_means(job.document, editor.document)) return true;
     if (job.binds) return false;
-    return !present_binding(editor) || refining_work(editor.deformation, editor.document) <= refined_at_once;
+    return !present_binding(editor) || settles_at_once(editor);
 }
 
 }  // namespace
