@@ -87,7 +87,7 @@ Json description(const InfoOptions& o) {
               {"height", picture.image.height},
               {"bits", picture.image.bits()},
               {"alpha", has_alpha(picture.image)},
-              {"icc_bytes", picture.image.icc.size()},
+              {"icc_bytes", picture.image.description.icc.size()},
               {"pixels_per_metre", nullptr},
               {"mesh", json_of(document.mesh, *deformation.binding)},
               {"weights", json_of(document.weights)},
@@ -96,8 +96,9 @@ Json description(const InfoOptions& o) {
               {"stiffness", document.stiffness && !is_blank(*document.stiffness)},
               {"probes", std::move(probes)}};
     add_renderer(json, o.backend);
-    if (picture.image.resolution)
-        json["pixels_per_metre"] = {picture.image.resolution->x, picture.image.resolution->y};
+    if (picture.image.description.resolution)
+        json["pixels_per_metre"] = {picture.image.description.resolution->x,
+                                    picture.image.description.resolution->y};
     return json;
 }
 

@@ -112,8 +112,7 @@ ExportJob::ExportJob(PictureDrawer& drawer, const Deformation& deformation, cons
     const Image& original = deformation.source.picture->image;
     like_.width = view.width;
     like_.height = view.height;
-    like_.icc = original.icc;
-    like_.resolution = original.resolution;
+    like_.description = original.description;
     if (original.bits() == 16) like_.rgba = std::vector<std::uint16_t>();
 }
 

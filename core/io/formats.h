@@ -16,16 +16,16 @@ namespace probewarp {
 
 // Every decoder throws Error with a clause on what is wrong, no file name. None of them trusts a length, an
 // offset or a dimension of the file, and none allocates pixels before check_image_size.
-Image decode_png(Bytes bytes);
-Image decode_jpeg(Bytes bytes);
-Image decode_bmp(Bytes bytes);
-Image decode_tga(Bytes bytes);
-Image decode_gif(Bytes bytes);  ///< the first frame on its canvas
-Image decode_psd(Bytes bytes);  ///< the merged picture
-Image decode_pnm(Bytes bytes);
+Image decode_png(Bytes bytes, const DecodeOptions& options);
+Image decode_jpeg(Bytes bytes, const DecodeOptions& options);
+Image decode_bmp(Bytes bytes, const DecodeOptions& options);
+Image decode_tga(Bytes bytes, const DecodeOptions& options);
+Image decode_gif(Bytes bytes, const DecodeOptions& options);  ///< the first frame on its canvas
+Image decode_psd(Bytes bytes, const DecodeOptions& options);  ///< the merged picture
+Image decode_pnm(Bytes bytes, const DecodeOptions& options);
 
-std::unique_ptr<RowReader> read_png_rows(Bytes bytes);
-std::unique_ptr<RowReader> read_jpeg_rows(Bytes bytes);
+std::unique_ptr<RowReader> read_png_rows(Bytes bytes, const DecodeOptions& options);
+std::unique_ptr<RowReader> read_jpeg_rows(Bytes bytes, const DecodeOptions& options);
 
 std::vector<std::byte> encode_png(const Image& image, const EncodeOptions& options);
 /// 16-bit grey (1 channel) or grey with alpha (2). samples: height x width x channels
@@ -41,16 +41,11 @@ bool looks_like_tga(Bytes bytes);  ///< a header that makes sense; TGA has no si
 inline Error truncated(std::string_view label) {
     return Error("is truncated; expected a whole " + std::string(label) + " file");
 }
+/// Like truncated(), of a file that salvaging opens.
+inline IncompleteFile incomplete(std::string_view label) { return IncompleteFile(truncated(label).what()); }
 inline Error damaged(std::string_view label, std::string_view what) {
     return Error("is damaged (" + std::string(what) + "); expected a sound " + std::string(label) + " file");
 }
-
-/// Profiles and other ancillary data that a file may have inflated or scattered: no more than this is kept.
-inline constexpr std::size_t max_icc_bytes = std::size_t{4} << 20;
-
-/// The profile, unless it says that it is for grey or CMYK: every Image is RGB, where such a profile means
-/// nothing.
-std::vector<std::byte> rgb_profile(Bytes profile);
 
 /// Whether these pixels per metre can be meant, and fit into the 31 bits that PNG and BMP have for them.
 inline bool is_resolution(double x, double y) {

@@ -84,7 +84,7 @@ std::vector<int> gif_row_order(int height, bool interlaced) {
 
 }  // namespace
 
-Image decode_gif(Bytes bytes) {
+Image decode_gif(Bytes bytes, const DecodeOptions&) {
     const GifFrame frame = survey_gif(bytes);
     check_image_size(le16(bytes, 6), le16(bytes, 8), 8);
     if (frame.at == 0) throw damaged("GIF", "there is no picture in it");

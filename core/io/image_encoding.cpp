@@ -26,8 +26,7 @@ ImageEncoding::ImageEncoding(const ImageFormat& format, const Image& like, const
     : format_(format), options_(options), transparent_(transparent) {
     whole_.width = like.width;
     whole_.height = like.height;
-    whole_.icc = like.icc;
-    whole_.resolution = like.resolution;
+    whole_.description = like.description;
     if (like.bits() == 16) whole_.rgba = std::vector<std::uint16_t>();
     if (format.encode == &encode_png)
         png_ = std::make_unique<PngRows>(png_shape(whole_, transparent), options.compression);
@@ -93,8 +92,7 @@ FileParts ImageEncoding::finish() {
 void ImageEncoding::add_beginning(FileParts& parts) {
     if (begun_) return;
     begun_ = true;
-    parts.insert(parts.begin(),
-                 png_beginning(png_shape(whole_, transparent_), whole_.icc, whole_.resolution));
+    parts.insert(parts.begin(), png_beginning(png_shape(whole_, transparent_), whole_.description));
 }
 
 }  // namespace probewarp

@@ -101,7 +101,18 @@ struct SourceBytes {
 
 }  // namespace
 
-Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pixels pixels) {
+namespace {
+
+/// What was salvaged becomes a sound file, since a project keeps the original and opens only sound ones.
+void keep_as_png(Picture& picture) {
+    picture.original = encode_png(picture.image, {});
+    picture.format = "png";
+}
+
+}  // namespace
+
+Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pixels pixels,
+                       const DecodeOptions& options) {
     const SourceBytes counted(bytes.size());
     const std::string called = printable(name);
     const ImageFormat* format = recognised_format(bytes, name);
@@ -110,11 +121,12 @@ Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pi
                     ": is not a picture that can be read; expected PNG, JPEG, BMP, TGA, GIF, PSD or PNM");
     Picture picture{{}, name_without_folder(name), std::string(format->name), std::move(bytes), nullptr};
     naming_errors(name, [&] {
-        if (pixels == Pixels::whole || !format->read_rows) {
-            picture.image = format->decode(picture.original);
+        if (pixels == Pixels::whole || !format->read_rows || options.salvage) {
+            picture.image = format->decode(picture.original, options);
+            if (picture.image.incomplete) keep_as_png(picture);
             return;
         }
-        auto reader = format->read_rows(picture.original);
+        auto reader = format->read_rows(picture.original, options);
         picture.image = reader->blank();
         if (picture.image.opaque)
             picture.arriving = read_beside(std::move(reader), picture.image, name);
@@ -124,8 +136,8 @@ Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pi
     return picture;
 }
 
-Picture read_picture(const std::filesystem::path& path, Pixels pixels) {
-    return decode_picture(read_file(path), path.string(), pixels);
+Picture read_picture(const std::filesystem::path& path, Pixels pixels, const DecodeOptions& options) {
+    return decode_picture(read_file(path), path.string(), pixels, options);
 }
 
 void check_image_size(long long width, long long height, int bits) {
@@ -155,13 +167,6 @@ Image blank_image(long long width, long long height, int bits) {
     else
         image.rgba = std::vector<std::uint8_t>(samples);
     return image;
-}
-
-std::vector<std::byte> rgb_profile(Bytes profile) {
-    const bool other = profile.size() >= 20 &&
-                       (begins_with(profile.subspan(16), "GRAY") || begins_with(profile.subspan(16), "CMYK"));
-    if (other || profile.size() > max_icc_bytes) return {};
-    return {profile.begin(), profile.end()};
 }
 
 }  // namespace probewarp

@@ -32,6 +32,11 @@ struct EncodeOptions {
     Compression compression = Compression::standard;  ///< of PNG
 };
 
+struct DecodeOptions {
+    /// Opens what is there of a file that ends too soon or is damaged at its end, rather than refusing it.
+    bool salvage = false;
+};
+
 class RowReader;
 
 struct ImageFormat {
@@ -41,12 +46,12 @@ struct ImageFormat {
     std::span<const std::string_view> extensions;
     /// By the first bytes. For TGA, which has no signature, only whether a TGA header would make sense.
     bool (*recognise)(std::span<const std::byte> bytes);
-    /// Throws Error: a clause on what is wrong and what is expected, no file name. Grey and palettes become
-    /// RGBA; 16 bits a sample stay (PNG, PSD, PNM), all else is 8. ICC profiles are kept where they are for
-    /// RGB (PNG, JPEG), the resolution where the file has one (PNG, JPEG, BMP).
-    Image (*decode)(std::span<const std::byte> bytes);
+    /// Throws Error: a clause on what is wrong and what is expected, no file name; IncompleteFile where
+    /// salvaging would open it. Grey and palettes become RGBA; 16 bits a sample stay, all else is 8.
+    /// docs/formats.md says what is read of each format.
+    Image (*decode)(std::span<const std::byte> bytes, const DecodeOptions& options);
     /// decode in portions; null where it decodes all at once. The bytes must outlive it.
-    std::unique_ptr<RowReader> (*read_rows)(std::span<const std::byte> bytes);
+    std::unique_ptr<RowReader> (*read_rows)(std::span<const std::byte> bytes, const DecodeOptions& options);
     /// Null where the format is only read. Throws Error. The same image and options give the same bytes. PNG
     /// keeps everything; BMP and TGA round 16 bits to 8 and drop the profile; JPEG has the background under
     /// it besides.
@@ -69,12 +74,15 @@ enum class Pixels {
 };
 
 /// Decodes the bytes of an image file, whatever its ending says; `name` is what errors call it, and its
-/// ending is asked only for TGA, which has no signature. Throws Error: "NAME: what is wrong; what is
-/// expected".
-Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pixels pixels = Pixels::whole);
+/// ending is asked only for TGA, which has no signature. Throws Error, or IncompleteFile where salvaging
+/// would open it: "NAME: what is wrong; what is expected". What is salvaged is whole when it is handed over,
+/// and its original is a PNG made of it, so that a project with it opens again.
+Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pixels pixels = Pixels::whole,
+                       const DecodeOptions& options = {});
 
 /// read_file and decode_picture.
-Picture read_picture(const std::filesystem::path& path, Pixels pixels = Pixels::whole);
+Picture read_picture(const std::filesystem::path& path, Pixels pixels = Pixels::whole,
+                     const DecodeOptions& options = {});
 
 /// Throws Error unless width, height and depth (8 or 16) are within max_image_side and max_image_bytes, and
 /// within max_decoding_bytes together with the file that decode_picture is at. Readers call it with the

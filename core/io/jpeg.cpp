@@ -17,7 +17,9 @@
 #include <new>
 #include <optional>
 
+#include "io/colours.h"
 #include "io/exif.h"
+#include "io/foreign_colours.h"
 #include "io/formats.h"
 #include "io/jpeg_encoder.h"
 #include "io/row_reader.h"
@@ -151,16 +153,6 @@ void read_header(Decoder& decoder, Bytes bytes) {
     if (decoder.jpeg.arith_code) throw Error("is arithmetic-coded; expected a Huffman-coded JPEG file");
 }
 
-/// The plain conversion, without a profile. Adobe's programs store the inks inverted.
-void cmyk_to_rgba(std::span<std::uint8_t> samples, bool inverted) {
-    for (std::size_t i = 0; i < samples.size(); i += 4) {
-        const auto light = [&](std::size_t k) { return inverted ? samples[i + k] : 255u - samples[i + k]; };
-        const unsigned k = light(3);
-        for (std::size_t c = 0; c < 3; ++c) samples[i + c] = std::uint8_t((light(c) * k + 127) / 255);
-        samples[i + 3] = 255;
-    }
-}
-
 std::optional<Resolution> jfif_resolution(const jpeg_decompress_struct& jpeg) {
     if (!jpeg.saw_JFIF_marker || jpeg.X_density == 0 || jpeg.Y_density == 0) return {};
     if (jpeg.density_unit != 1 && jpeg.density_unit != 2) return {};
@@ -203,8 +195,11 @@ class JpegReader final : public RowReader {
     explicit JpegReader(Bytes bytes) {
         read_header(decoder_, bytes);
         jpeg_decompress_struct& jpeg = decoder_.jpeg;
-        cmyk_ = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
-        jpeg.out_color_space = cmyk_ ? JCS_CMYK : JCS_EXT_RGBA;
+        const bool cmyk = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
+        if (cmyk)
+            to_srgb_.emplace(jpeg.saw_Adobe_marker ? ForeignColours::cmyk_inverted : ForeignColours::cmyk,
+                             std::as_bytes(std::span(decoder_.icc, decoder_.icc_bytes)));
+        jpeg.out_color_space = cmyk ? JCS_CMYK : JCS_EXT_RGBA;
         // Reads the whole of a progressive file: before the pixels, so that a bad one never takes memory for
         // both.
         decoder_.run([&] { jpeg_start_decompress(&jpeg); });
@@ -215,13 +210,14 @@ class JpegReader final : public RowReader {
     Image blank() override {
         const jpeg_decompress_struct& jpeg = decoder_.jpeg;
         Image image = blank_image(jpeg.output_width, jpeg.output_height, 8);
-        image.resolution = jfif_resolution(jpeg);
-        if (!image.resolution) image.resolution = exif_.resolution;
-        if (!cmyk_ && decoder_.icc)
-            image.icc = rgb_profile(std::as_bytes(std::span(decoder_.icc, decoder_.icc_bytes)));
+        std::optional<Resolution>& resolution = image.description.resolution;
+        resolution = jfif_resolution(jpeg);
+        if (!resolution) resolution = exif_.resolution;
+        if (!to_srgb_ && decoder_.icc)
+            image.description.icc = rgb_profile(std::as_bytes(std::span(decoder_.icc, decoder_.icc_bytes)));
         if (turned_on_its_side(exif_.orientation)) {
             std::swap(image.width, image.height);
-            if (image.resolution) std::swap(image.resolution->x, image.resolution->y);
+            if (resolution) std::swap(resolution->x, resolution->y);
         }
         image.opaque = true;
         return image;
@@ -257,7 +253,7 @@ class JpegReader final : public RowReader {
             JSAMPROW row = samples + at;
             decoder_.run([&] { jpeg_read_scanlines(&jpeg, &row, 1); });
         }
-        if (cmyk_) cmyk_to_rgba({samples, rgba.size()}, jpeg.saw_Adobe_marker);
+        if (to_srgb_) to_srgb_->convert({samples, rgba.size()});
     }
 
     /// Puts stored_ where it belongs in the upright picture.
@@ -272,7 +268,7 @@ class JpegReader final : public RowReader {
     }
 
     Decoder decoder_;
-    bool cmyk_ = false;
+    std::optional<ToSrgb> to_srgb_;  ///< of a file in printing inks
     Exif exif_;
     Walk walk_{};
     std::vector<std::byte> stored_;  ///< #rows_at_once x output_width x 4, for a picture that is not upright
@@ -280,9 +276,11 @@ class JpegReader final : public RowReader {
 
 }  // namespace
 
-std::unique_ptr<RowReader> read_jpeg_rows(Bytes bytes) { return std::make_unique<JpegReader>(bytes); }
+std::unique_ptr<RowReader> read_jpeg_rows(Bytes bytes, const DecodeOptions&) {
+    return std::make_unique<JpegReader>(bytes);
+}
 
-Image decode_jpeg(Bytes bytes) {
+Image decode_jpeg(Bytes bytes, const DecodeOptions&) {
     JpegReader reader(bytes);
     return read_whole(reader);
 }
@@ -347,7 +345,7 @@ void set_parameters(jpeg_compress_struct& jpeg, const Image& image, int quality)
     // blur.
     for (int i = 0; i < jpeg.num_components; ++i)
         jpeg.comp_info[i].h_samp_factor = jpeg.comp_info[i].v_samp_factor = 1;
-    if (image.resolution) set_density(jpeg, *image.resolution);
+    if (image.description.resolution) set_density(jpeg, *image.description.resolution);
 }
 
 /// One row over the background, as 8-bit RGB and a byte of no meaning. Exact: one division, rounded to the
@@ -388,9 +386,10 @@ JpegRows::JpegRows(const Image& like, const EncodeOptions& options)
         jpeg_mem_dest(&encoder.jpeg, &encoder.out, &encoder.out_bytes);
         set_parameters(encoder.jpeg, like, options.quality);
         jpeg_start_compress(&encoder.jpeg, TRUE);
-        if (!like.icc.empty() && like.icc.size() <= max_icc_bytes)
-            jpeg_write_icc_profile(&encoder.jpeg, reinterpret_cast<const JOCTET*>(like.icc.data()),
-                                   unsigned(like.icc.size()));
+        if (!like.description.icc.empty() && like.description.icc.size() <= max_icc_bytes)
+            jpeg_write_icc_profile(&encoder.jpeg,
+                                   reinterpret_cast<const JOCTET*>(like.description.icc.data()),
+                                   unsigned(like.description.icc.size()));
     });
 }
 

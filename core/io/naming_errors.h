@@ -14,6 +14,8 @@ template <class Step>
 auto naming_errors(const std::string& name, const Step& step) {
     try {
         return step();
+    } catch (const IncompleteFile& error) {
+        throw IncompleteFile(printable(name) + ": " + printable(error.what()));
     } catch (const Error& error) {
         throw Error(printable(name) + ": " + printable(error.what()));
     } catch (const std::bad_alloc&) {

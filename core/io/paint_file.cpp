@@ -61,7 +61,7 @@ std::size_t paint_texels(std::span<const std::byte> bytes) {
 
 PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent) {
     if (!find_image_format("png")->recognise(bytes)) throw Error("is no PNG; expected a 16-bit grey one");
-    const Image image = decode_png(bytes);
+    const Image image = decode_png(bytes, {});
     PaintMap map = empty_paint_map(image.width, image.height, extent);
     std::map<Texel, std::shared_ptr<const PaintTile>> uniform;  // tiles of one value, each made once
     const auto tile_of = [&](const auto& rgba, const TileRect& rect) -> std::shared_ptr<const PaintTile> {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <new>
 
+#include "io/colours.h"
 #include "io/formats.h"
 #include "io/row_reader.h"
 
@@ -158,11 +159,11 @@ void check_rows(Parts parts) {
 void read_extras(spng_ctx* spng, Image& image) {
     spng_iccp iccp{};
     if (spng_get_iccp(spng, &iccp) == SPNG_OK)
-        image.icc = rgb_profile(std::as_bytes(std::span(iccp.profile, iccp.profile_len)));
+        image.description.icc = rgb_profile(std::as_bytes(std::span(iccp.profile, iccp.profile_len)));
     spng_phys phys{};
     if (spng_get_phys(spng, &phys) == SPNG_OK && phys.unit_specifier == 1 &&
         is_resolution(phys.ppu_x, phys.ppu_y))
-        image.resolution = Resolution{phys.ppu_x, phys.ppu_y};
+        image.description.resolution = Resolution{phys.ppu_x, phys.ppu_y};
 }
 
 /// Whether the file has no alpha to say.
@@ -216,9 +217,11 @@ class PngReader final : public RowReader {
 
 }  // namespace
 
-std::unique_ptr<RowReader> read_png_rows(Bytes bytes) { return std::make_unique<PngReader>(bytes); }
+std::unique_ptr<RowReader> read_png_rows(Bytes bytes, const DecodeOptions&) {
+    return std::make_unique<PngReader>(bytes);
+}
 
-Image decode_png(Bytes bytes) {
+Image decode_png(Bytes bytes, const DecodeOptions&) {
     PngReader reader(bytes);
     return read_whole(reader);
 }

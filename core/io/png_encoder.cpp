@@ -301,13 +301,12 @@ PngShape png_shape(const Image& image, bool transparent) {
     return {image.width, image.height, image.bits(), 4, transparent ? 4 : 3};
 }
 
-std::vector<std::byte> png_beginning(const PngShape& shape, Bytes icc,
-                                     const std::optional<Resolution>& resolution) {
+std::vector<std::byte> png_beginning(const PngShape& shape, const Description& description) {
     std::vector<std::byte> begin;
     put_text(begin, "\x89PNG\r\n\x1a\n");
     put_header(begin, shape);
-    put_profile(begin, icc);
-    put_resolution(begin, resolution);
+    put_profile(begin, description.icc);
+    put_resolution(begin, description.resolution);
     return begin;
 }
 
@@ -321,7 +320,7 @@ std::vector<std::byte> encode_png(const Image& image, const EncodeOptions& optio
     const PngShape shape = png_shape(image, has_alpha(image));
     PngRows rows(shape, options.compression);
     rows.add(band_of(pixel_bytes(image).data(), image.height));
-    return joined(png_beginning(shape, image.icc, image.resolution), png_rest(rows));
+    return joined(png_beginning(shape, image.description), png_rest(rows));
 }
 
 std::vector<std::byte> encode_png_samples(int width, int height, int channels,
@@ -329,7 +328,7 @@ std::vector<std::byte> encode_png_samples(int width, int height, int channels,
     const PngShape shape{width, height, 16, channels, channels};
     PngRows rows(shape, Compression::standard);
     rows.add(band_of(std::as_bytes(grey).data(), height));
-    return joined(png_beginning(shape, {}, {}), png_rest(rows));
+    return joined(png_beginning(shape, {}), png_rest(rows));
 }
 
 }  // namespace probewarp

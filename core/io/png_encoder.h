@@ -85,8 +85,7 @@ class PngRows {
 PngShape png_shape(const Image& image, bool transparent);
 
 /// What stands before the strips.
-std::vector<std::byte> png_beginning(const PngShape& shape, Bytes icc,
-                                     const std::optional<Resolution>& resolution);
+std::vector<std::byte> png_beginning(const PngShape& shape, const Description& description);
 
 /// What is left of the file. Throws as PngRows::finish.
 FileParts png_rest(PngRows& rows);

@@ -113,7 +113,7 @@ void read_pixels(Text& text, const Header& header, std::vector<Sample>& rgba) {
 
 }  // namespace
 
-Image decode_pnm(Bytes bytes) {
+Image decode_pnm(Bytes bytes, const DecodeOptions&) {
     Text text{bytes};
     const Header header = read_header(text);
     const int bits = header.highest > 255 ? 16 : 8;

@@ -390,11 +390,12 @@ std::vector<std::byte> encode_project(const Document& document) {
     return write_zip(members);
 }
 
-Document decode_project(std::vector<std::byte> bytes, const std::string& name, Pixels pixels) {
+Document decode_project(std::vector<std::byte> bytes, const std::string& name, Pixels pixels,
+                        const DecodeOptions& options) {
     Opened opened = naming_errors(name, [&] { return open_project(std::move(bytes)); });
     Document& document = opened.document;
-    Picture picture =
-        decode_picture(std::move(opened.image), fmt::format("{}: {}", name, opened.image_file), pixels);
+    Picture picture = decode_picture(std::move(opened.image), fmt::format("{}: {}", name, opened.image_file),
+                                     pixels, options);
     picture.name = opened.image_name;
     document.picture = std::make_shared<Picture>(std::move(picture));
     naming_errors(name, [&] { check_size(document); });
@@ -403,11 +404,11 @@ Document decode_project(std::vector<std::byte> bytes, const std::string& name, P
 
 bool is_project(std::span<const std::byte> bytes) { return is_zip(bytes); }
 
-Document read_document(const std::filesystem::path& path, Pixels pixels) {
+Document read_document(const std::filesystem::path& path, Pixels pixels, const DecodeOptions& options) {
     std::vector<std::byte> bytes = read_file(path);
-    if (is_project(bytes)) return decode_project(std::move(bytes), path.string(), pixels);
+    if (is_project(bytes)) return decode_project(std::move(bytes), path.string(), pixels, options);
     Document document;
-    Picture picture = decode_picture(std::move(bytes), path.string(), pixels);
+    Picture picture = decode_picture(std::move(bytes), path.string(), pixels, options);
     picture.name = one_line(path.filename().string());
     document.picture = std::make_shared<Picture>(std::move(picture));
     return document;

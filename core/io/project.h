@@ -23,10 +23,13 @@ std::vector<std::byte> encode_project(const Document& document);
 
 /// Throws Error: "NAME: what is wrong; what is expected". Fields that this version does not know are refused,
 /// so that saving again never loses what a later version wrote.
-Document decode_project(std::vector<std::byte> bytes, const std::string& name, Pixels pixels = Pixels::whole);
+Document decode_project(std::vector<std::byte> bytes, const std::string& name, Pixels pixels = Pixels::whole,
+                        const DecodeOptions& options = {});
 
 /// A document from a file: a project as it was saved, or a picture without probes.
-Document read_document(const std::filesystem::path& path, Pixels pixels = Pixels::whole);
+/// Throws Error, or IncompleteFile where salvaging would open it.
+Document read_document(const std::filesystem::path& path, Pixels pixels = Pixels::whole,
+                       const DecodeOptions& options = {});
 
 /// Whether the bytes are meant as a project rather than a picture.
 bool is_project(std::span<const std::byte> bytes);

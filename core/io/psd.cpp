@@ -150,7 +150,7 @@ void read_psd_pixels(Psd& psd, std::vector<Sample>& rgba) {
 
 }  // namespace
 
-Image decode_psd(Bytes bytes) {
+Image decode_psd(Bytes bytes, const DecodeOptions&) {
     Psd psd = read_psd_header(bytes);
     find_psd_rows(psd, bytes);
     Image image = blank_image((long long)(psd.width), (long long)(psd.height), int(psd.sample_bytes * 8));

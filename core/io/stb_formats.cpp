@@ -79,7 +79,7 @@ Image decode_stb(std::string_view label, std::vector<Bytes> parts) {
 
 // ---- BMP ----
 
-Image decode_bmp(Bytes bytes) {
+Image decode_bmp(Bytes bytes, const DecodeOptions&) {
     const BmpHeader header = read_bmp_header(bytes);
     if (header.pixels < 14 + header.size) throw damaged("BMP", "its pixels start inside its header");
     const std::size_t row_bytes = (std::size_t(header.width) * header.bits + 31) / 32 * 4;
@@ -88,7 +88,8 @@ Image decode_bmp(Bytes bytes) {
 
     const std::vector<std::byte> plain = plain_bmp_header(bytes, header);
     Image image = decode_stb("BMP", {plain, bytes.subspan(header.pixels, all_bytes)});
-    if (is_resolution(header.resolution.x, header.resolution.y)) image.resolution = header.resolution;
+    if (is_resolution(header.resolution.x, header.resolution.y))
+        image.description.resolution = header.resolution;
     return image;
 }
 
@@ -123,7 +124,7 @@ bool looks_like_tga(Bytes bytes) {
     return u8(bytes, 1) == 0 && (type == 2 || type == 3 || type == 10 || type == 11) && is_tga_depth(bits);
 }
 
-Image decode_tga(Bytes bytes) {
+Image decode_tga(Bytes bytes, const DecodeOptions&) {
     if (!looks_like_tga(bytes)) throw damaged("TGA", "its header makes no sense");
     check_image_size(le16(bytes, 12), le16(bytes, 14), 8);
     std::vector<std::byte> header(bytes.begin(), bytes.begin() + tga_header);
@@ -191,10 +192,11 @@ std::vector<std::byte> encode_stb(StbWriter write, const Image& image) {
 
 std::vector<std::byte> encode_bmp(const Image& image, const EncodeOptions&) {
     std::vector<std::byte> out = encode_stb(stbi_write_bmp_to_func, image);
-    if (image.resolution && is_resolution(image.resolution->x, image.resolution->y))
+    if (image.description.resolution &&
+        is_resolution(image.description.resolution->x, image.description.resolution->y))
         for (std::size_t i = 0; i < 4; ++i) {
-            out[38 + i] = std::byte(image.resolution->x >> (8 * i) & 255);
-            out[42 + i] = std::byte(image.resolution->y >> (8 * i) & 255);
+            out[38 + i] = std::byte(image.description.resolution->x >> (8 * i) & 255);
+            out[42 + i] = std::byte(image.description.resolution->y >> (8 * i) & 255);
         }
     return out;
 }

@@ -27,14 +27,38 @@ struct Resolution {
     friend bool operator==(const Resolution&, const Resolution&) = default;
 };
 
+/// CIE x and y of white, red, green and blue, times 100,000, as PNG's cHRM has them.
+using Chromaticities = std::array<std::uint32_t, 8>;
+
+/// What a file says about how its pixels are meant to be seen, and about itself. Nothing of it changes a
+/// pixel here: what is written carries on what its format can hold. Where several members speak of the
+/// colours, the first of cicp, icc, srgb_intent, gamma with chromaticities is meant (PNG, third edition,
+/// section 4.3); none: sRGB.
+struct Description {
+    std::vector<std::byte> icc{};  ///< an ICC profile for RGB; empty: none
+    /// ITU-T H.273: colour primaries, transfer function, matrix coefficients (0), full range (1).
+    std::optional<std::array<std::uint8_t, 4>> cicp{};
+    std::optional<std::uint8_t> srgb_intent{};  ///< the colours are said to be sRGB; rendering intent, 0 to 3
+    std::optional<std::uint32_t> gamma{};       ///< as PNG's gAMA: 100,000 over the exponent to linear light
+    std::optional<Chromaticities> chromaticities{};
+    std::optional<Resolution> resolution{};
+    std::optional<Resolution> aspect{};  ///< where there is no resolution: pixels per the same unknown unit
+    /// EXIF as a TIFF block, from its byte order on: upright, and without a thumbnail. Empty: none.
+    std::vector<std::byte> exif{};
+    /// Where the top-left corner lies on a larger canvas: x right, y down, pixels. As PNG's oFFs.
+    std::optional<std::array<std::int32_t, 2>> offset{};
+    friend bool operator==(const Description&, const Description&) = default;
+};
+
 struct Image {
     int width = 0;   ///< pixels, >= 1
     int height = 0;  ///< pixels, >= 1
     /// height x width x 4 (RGBA, straight alpha), row-major from the top-left corner.
     std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>> rgba;
-    std::vector<std::byte> icc;            ///< the ICC profile of the colours; empty: sRGB
-    std::optional<Resolution> resolution;  ///< where the file gave one
-    bool opaque = false;                   ///< every alpha is sure to be full; else one has to look
+    Description description;
+    bool opaque = false;  ///< every alpha is sure to be full; else one has to look
+    /// The file ended too soon and was salvaged: what was missing is clear or black.
+    bool incomplete = false;
 
     int bits() const { return rgba.index() == 0 ? 8 : 16; }
 };

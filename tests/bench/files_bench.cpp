@@ -127,7 +127,7 @@ void open_against(benchmark::State& state, const char* format, const char* count
                   void (*library)(std::span<const std::byte>)) {
     const auto bytes = find_image_format(format)->encode(picture(), {});
     compare(
-        state, counter, [&] { find_image_format(format)->decode(bytes); }, [&] { library(bytes); });
+        state, counter, [&] { find_image_format(format)->decode(bytes, {}); }, [&] { library(bytes); });
 }
 BENCHMARK_CAPTURE(open_against, spng, "png", "spng_time", &bench::spng_open)
     ->Unit(benchmark::kMillisecond)

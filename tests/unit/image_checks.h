@@ -47,8 +47,8 @@ inline Image decode(const File& file, const std::string& name = "picture") {
     EXPECT_EQ(arriving.width, image.width);
     EXPECT_EQ(arriving.height, image.height);
     EXPECT_EQ(arriving.rgba, image.rgba);
-    EXPECT_EQ(arriving.icc, image.icc);
-    EXPECT_EQ(arriving.resolution, image.resolution);
+    EXPECT_EQ(arriving.description.icc, image.description.icc);
+    EXPECT_EQ(arriving.description.resolution, image.description.resolution);
     return image;
 }
 

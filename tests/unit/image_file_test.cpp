@@ -31,8 +31,8 @@ Image sample_image(bool opaque, int width = 13, int height = 7) {
                                          : full - i * 251})
             rgba.push_back(Sample(v));
     Image image{width, height, std::move(rgba), {}, {}};
-    for (int i = 0; i < 300; ++i) image.icc.push_back(std::byte(i * i % 251));
-    image.resolution = Resolution{2835, 11800};
+    for (int i = 0; i < 300; ++i) image.description.icc.push_back(std::byte(i * i % 251));
+    image.description.resolution = Resolution{2835, 11800};
     return image;
 }
 
@@ -104,20 +104,20 @@ TEST(ImageFile, PngKeepsEverything) {
             const Image back = decode(file);
             EXPECT_EQ(back.bits(), image.bits());
             EXPECT_EQ(pixels(back), pixels(image));
-            EXPECT_EQ(back.icc, image.icc);
-            EXPECT_EQ(back.resolution, image.resolution);
+            EXPECT_EQ(back.description.icc, image.description.icc);
+            EXPECT_EQ(back.description.resolution, image.description.resolution);
             EXPECT_EQ(std::to_integer<int>(file[25]), opaque ? 2 : 6) << "colour type";
             EXPECT_EQ(encode(image, "png"), file);
         }
     Image plain = sample_image<std::uint8_t>(true);
-    plain.icc.clear();
-    plain.resolution.reset();
-    EXPECT_TRUE(decode(encode(plain, "png")).icc.empty());
-    EXPECT_EQ(decode(encode(plain, "png")).resolution, std::nullopt);
+    plain.description.icc.clear();
+    plain.description.resolution.reset();
+    EXPECT_TRUE(decode(encode(plain, "png")).description.icc.empty());
+    EXPECT_EQ(decode(encode(plain, "png")).description.resolution, std::nullopt);
     for (const std::uint32_t beyond : {0u, 1u << 31}) {
-        plain.resolution = Resolution{beyond, 1};
-        EXPECT_EQ(decode(encode(plain, "png")).resolution, std::nullopt);
-        EXPECT_EQ(decode(encode(plain, "bmp")).resolution, std::nullopt);
+        plain.description.resolution = Resolution{beyond, 1};
+        EXPECT_EQ(decode(encode(plain, "png")).description.resolution, std::nullopt);
+        EXPECT_EQ(decode(encode(plain, "bmp")).description.resolution, std::nullopt);
     }
 }
 
@@ -128,7 +128,8 @@ TEST(ImageFile, BmpAndTgaKeepThePixelsInEightBits) {
                         deep = sample_image<std::uint16_t>(opaque);
             const Image back = decode(encode(image, format), "x.tga");
             EXPECT_EQ(pixels(back), pixels(image));
-            EXPECT_EQ(back.resolution, format == std::string("bmp") ? image.resolution : std::nullopt);
+            EXPECT_EQ(back.description.resolution,
+                      format == std::string("bmp") ? image.description.resolution : std::nullopt);
             EXPECT_EQ(pixels(decode(encode(deep, format), "x.tga")), rounded_to_8_bits(pixels(deep)));
             EXPECT_EQ(encode(image, format), encode(image, format));
         }
@@ -168,12 +169,14 @@ TEST(ImageFile, JpegLiesOnTheBackgroundAndKeepsProfileAndResolution) {
     const Image back = decode(encode(image, "jpeg", options));
     for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(pixel(back, 5, 5)[c], (Rgba{250, 10, 100}[c]), 2);  // YCbCr rounds
-    EXPECT_EQ(back.icc, image.icc);
-    EXPECT_EQ(back.resolution, (Resolution{2835, 11811}));  // 72 and 300 dots per inch
-    image.resolution = Resolution{4300, 65535 * 100};
-    EXPECT_EQ(decode(encode(image, "jpeg")).resolution, image.resolution) << "exact in dots per centimetre";
-    image.resolution = Resolution{100, 2'000'000'000};
-    EXPECT_EQ(decode(encode(image, "jpeg")).resolution, std::nullopt) << "beyond what JFIF can say";
+    EXPECT_EQ(back.description.icc, image.description.icc);
+    EXPECT_EQ(back.description.resolution, (Resolution{2835, 11811}));  // 72 and 300 dots per inch
+    image.description.resolution = Resolution{4300, 65535 * 100};
+    EXPECT_EQ(decode(encode(image, "jpeg")).description.resolution, image.description.resolution)
+        << "exact in dots per centimetre";
+    image.description.resolution = Resolution{100, 2'000'000'000};
+    EXPECT_EQ(decode(encode(image, "jpeg")).description.resolution, std::nullopt)
+        << "beyond what JFIF can say";
     EXPECT_LT(encode(sample_image<std::uint8_t>(true), "jpeg", {{}, 10}).size(),
               encode(sample_image<std::uint8_t>(true), "jpeg", {{}, 95}).size());
 }
@@ -309,9 +312,9 @@ TEST(ImageFile, PngWithAnyBitOfItsPixelsFlippedIsRefused) {
 
 TEST(ImageFile, AProfileForGreyIsNotKept) {
     Image image = sample_image<std::uint8_t>(true);
-    image.icc = join({File(16), bytes_of("GRAY"), File(100)});
-    EXPECT_TRUE(decode(encode(image, "png")).icc.empty());
-    EXPECT_TRUE(decode(encode(image, "jpeg")).icc.empty());
+    image.description.icc = join({File(16), bytes_of("GRAY"), File(100)});
+    EXPECT_TRUE(decode(encode(image, "png")).description.icc.empty());
+    EXPECT_TRUE(decode(encode(image, "jpeg")).description.icc.empty());
 }
 
 // ---- JPEG ----
@@ -346,7 +349,7 @@ TEST(ImageFile, JpegIsTurnedUpright) {
         const Image image = decode(with_marker(file, exif_marker(orientation)));
         EXPECT_EQ(letters(image), upright[orientation]) << orientation;
         const bool swapped = orientation >= 5 && orientation <= 8;
-        EXPECT_EQ(image.resolution, (swapped ? Resolution{2000, 1000} : Resolution{1000, 2000}))
+        EXPECT_EQ(image.description.resolution, (swapped ? Resolution{2000, 1000} : Resolution{1000, 2000}))
             << orientation;
     }
 }
@@ -355,9 +358,11 @@ TEST(ImageFile, JpegTakesItsResolutionFromJfifElseFromExif) {
     const auto dots = [](jpeg_compress_struct& jpeg) {
         jpeg.density_unit = 1, jpeg.X_density = jpeg.Y_density = 72;
     };
-    EXPECT_EQ(decode(six_greys()).resolution, std::nullopt);
-    EXPECT_EQ(decode(with_marker(six_greys(), exif_marker(1, 50))).resolution, (Resolution{5000, 5000}));
-    EXPECT_EQ(decode(with_marker(six_greys(dots), exif_marker(1, 50))).resolution, (Resolution{2835, 2835}));
+    EXPECT_EQ(decode(six_greys()).description.resolution, std::nullopt);
+    EXPECT_EQ(decode(with_marker(six_greys(), exif_marker(1, 50))).description.resolution,
+              (Resolution{5000, 5000}));
+    EXPECT_EQ(decode(with_marker(six_greys(dots), exif_marker(1, 50))).description.resolution,
+              (Resolution{2835, 2835}));
     EXPECT_EQ(letters(decode(
                   with_marker(six_greys(), bytes({0xFF, 0xE1, 0, 10, 'E', 'x', 'i', 'f', 0, 0, 'I', 'I'})))),
               "abc/def");

@@ -90,7 +90,7 @@ TEST(PaintFile, GreyWithoutAlphaCoversEverything) {
 
 TEST(PaintFile, AGreyFileIsAPictureOf16Bits) {
     const std::vector<std::uint16_t> grey{0x1234, 0xfedc};
-    const Image image = find_image_format("png")->decode(encode_grey_png(1, 2, grey));
+    const Image image = find_image_format("png")->decode(encode_grey_png(1, 2, grey), {});
     EXPECT_EQ(image.width, 1);
     EXPECT_EQ(image.height, 2);
     EXPECT_EQ(image.bits(), 16);

@@ -163,8 +163,8 @@ File in_portions(const char* format, const Image& image, const EncodeOptions& op
 
 TEST(Png, RowsMayComeInAnyPortions) {
     Image picture = picture_of<std::uint8_t>(Kind::gradient, 1500, 1101, true);
-    picture.icc = std::vector<std::byte>(200, std::byte{7});
-    picture.resolution = Resolution{4000, 5000};
+    picture.description.icc = std::vector<std::byte>(200, std::byte{7});
+    picture.description.resolution = Resolution{4000, 5000};
     for (const bool opaque : {true, false}) {
         if (!opaque) std::get<0>(picture.rgba)[(1000 * 1500 + 7) * 4 + 3] = 254;
         for (const auto& row : compressions()) {

@@ -41,7 +41,7 @@ TEST(Bmp, PalettesOfEveryDepth) {
 TEST(Bmp, TrueColourAndMasks) {
     const Image image = decode(make_bmp(1, -2, 24, 0, {}, bytes({0, 0, 255, 0, 255, 0, 0, 0})));
     EXPECT_EQ(pixels(image), (std::vector<Rgba>{red, blue})) << "negative height: from the top down";
-    EXPECT_EQ(image.resolution, (Resolution{2000, 3000}));
+    EXPECT_EQ(image.description.resolution, (Resolution{2000, 3000}));
     EXPECT_EQ(pixels(decode(make_bmp(2, 1, 16, 0, {}, bytes({0x00, 0x7C, 0xE0, 0x03})))),
               (std::vector<Rgba>{red, green}));
     const File masks565 = join({le(4, 0xF800), le(4, 0x07E0), le(4, 0x001F)});
@@ -270,12 +270,14 @@ TEST(Pnm, BadOnesAreRefused) {
 // Exceptions: a TGA's footer, whatever stands behind a GIF's trailer or a PNG's IEND, a plain bitmap's last
 // line break.
 
+const Description described{.icc = File(50), .resolution = Resolution{1, 2}};
+
 TEST(EachCut, OfPngIsRefused) {
     PngSpec spec{3, 3, 8, SPNG_COLOR_TYPE_INDEXED, true, {0, 1, 1, 0, 0, 1, 1, 0, 1}, {}, {}, true};
     spec.palette.n_entries = 2;
     spec.transparency.n_type3_entries = 1;
     expect_each_cut_refused(make_png(spec), "a.png");
-    Image image{4, 2, std::vector<std::uint16_t>(32, 999), File(50), Resolution{1, 2}};
+    Image image{4, 2, std::vector<std::uint16_t>(32, 999), described};
     expect_each_cut_refused(find_image_format("png")->encode(image, {}), "a.png");
 }
 
