@@ -106,17 +106,17 @@ class Inflater {
     Inflater& operator=(const Inflater&) = delete;
     ~Inflater() { inflateEnd(&stream_); }
 
-    enum class Result { filled, ended, bad };
-    /// Fills `to`. What has ended or is bad stays so.
+    enum class Result { filled, ended, truncated, bad };
+    /// Fills `to`. What cannot do so now never will.
     Result read(std::span<std::byte> to) {
         stream_.next_out = reinterpret_cast<Bytef*>(to.data());
         stream_.avail_out = uInt(to.size());
         while (stream_.avail_out > 0) {
             const int result = inflate(&stream_, Z_NO_FLUSH);
             if (result == Z_MEM_ERROR) throw std::bad_alloc();
-            if (result == Z_STREAM_END && stream_.avail_out > 0) return Result::ended;
-            if (result == Z_BUF_ERROR) return Result::ended;
-            if (result != Z_OK && result != Z_STREAM_END) return Result::bad;
+            if (result == Z_BUF_ERROR) return Result::truncated;
+            if (result == Z_STREAM_END) return stream_.avail_out > 0 ? Result::ended : Result::filled;
+            if (result != Z_OK) return Result::bad;
         }
         return Result::filled;
     }
@@ -124,6 +124,13 @@ class Inflater {
   private:
     z_stream stream_{};
 };
+
+IncompleteFile fault_of(Inflater::Result result, const std::string& label) {
+    if (result == Inflater::Result::truncated) return incomplete(label);
+    return IncompleteFile(damaged(label, result == Inflater::Result::ended ? "pixels are missing"
+                                                                           : "its ZIP data make no sense")
+                              .what());
+}
 
 /// Each sample is stored as its difference from the one before it.
 void add_up(std::span<std::byte> row, int bits) {
@@ -145,9 +152,7 @@ class DeflatedChannel final : public PsdChannel {
 
     void read(std::span<std::byte> row) override {
         const Inflater::Result result = inflater_.read(row);
-        if (result == Inflater::Result::ended) throw incomplete(label_);
-        if (result == Inflater::Result::bad)
-            throw IncompleteFile(damaged(label_, "its ZIP data make no sense").what());
+        if (result != Inflater::Result::filled) throw fault_of(result, label_);
         if (predicted_) add_up(row, bits_);
         if (predicted_ && bits_ == 32) join_bytes(row);
     }
@@ -172,9 +177,11 @@ class DeflatedChannel final : public PsdChannel {
 enum Compression { raw = 0, packed = 1, deflated = 2, deflated_differences = 3 };
 
 /// What has lost even the first row cannot be salvaged.
-bool is_whole(const Psd& psd, std::uint64_t there, std::uint64_t needed, std::uint64_t first_row) {
+std::optional<IncompleteFile> fault_of(const Psd& psd, std::uint64_t there, std::uint64_t needed,
+                                       std::uint64_t first_row) {
     if (there < first_row) throw truncated(psd.label());
-    return there >= needed;
+    if (there < needed) return incomplete(psd.label());
+    return {};
 }
 
 /// The channels that make the picture, in the order in which they are used.
@@ -192,7 +199,7 @@ Bytes from(Bytes bytes, std::uint64_t at) {
 PsdChannels raw_channels(const Psd& psd) {
     const std::uint64_t plane = std::uint64_t(psd.height) * psd.row_bytes();
     PsdChannels channels;
-    channels.whole = is_whole(psd, psd.rows.size(), plane * psd.channels, psd.row_bytes());
+    channels.fault = fault_of(psd, psd.rows.size(), plane * psd.channels, psd.row_bytes());
     for (const std::size_t c : wanted_channels(psd))
         channels.list.push_back(std::make_unique<RawChannel>(from(psd.rows, c * plane), psd.label()));
     return channels;
@@ -204,7 +211,7 @@ PsdChannels packed_channels(const Psd& psd) {
     const RowLengths lengths{psd.rows.first(table), psd.large};
     const Bytes data = psd.rows.subspan(table);
     PsdChannels channels;
-    channels.whole = is_whole(psd, data.size(), lengths.sum(0, rows), lengths[0]);
+    channels.fault = fault_of(psd, data.size(), lengths.sum(0, rows), lengths[0]);
     for (const std::size_t c : wanted_channels(psd)) {
         const std::size_t first = c * psd.height;
         channels.list.push_back(
@@ -216,16 +223,24 @@ PsdChannels packed_channels(const Psd& psd) {
 PsdChannels deflated_channels(const Psd& psd) {
     const bool predicted = psd.compression == deflated_differences;
     if (predicted && psd.bits == 1) throw damaged(psd.label(), "it has differences of single bits");
+    const std::vector<std::size_t> wanted = wanted_channels(psd);
     Inflater inflater(psd.rows);
     std::vector<std::byte> row(psd.row_bytes());
     PsdChannels channels;
-    std::size_t at = 0;
-    for (const std::size_t c : wanted_channels(psd)) {
-        for (; at < c; ++at)
-            for (std::size_t y = 0; y < psd.height; ++y) inflater.read(row);
-        channels.list.push_back(
-            std::make_unique<DeflatedChannel>(inflater, predicted, psd.bits, psd.label()));
+    for (std::size_t c = 0; c < psd.channels; ++c) {
+        if (std::find(wanted.begin(), wanted.end(), c) != wanted.end())
+            channels.list.push_back(
+                std::make_unique<DeflatedChannel>(inflater, predicted, psd.bits, psd.label()));
+        for (std::size_t y = 0; y < psd.height && !channels.fault; ++y) {
+            const Inflater::Result result = inflater.read(row);
+            if (result != Inflater::Result::filled) channels.fault = fault_of(result, psd.label());
+            if (channels.fault && c == 0 && y == 0) throw Error(channels.fault->what());
+        }
     }
+    // Reads the checksum behind the last row.
+    if (const auto end = inflater.read(std::span(row).first(1));
+        !channels.fault && end != Inflater::Result::filled && end != Inflater::Result::ended)
+        channels.fault = fault_of(end, psd.label());
     return channels;
 }
 

@@ -47,8 +47,8 @@ class SampleRows {
     SampleRows(const Psd& psd, bool salvage)
         : psd_(psd), salvage_(salvage), channels_(psd_channels(psd)), row_(psd.row_bytes()) {
         samples.assign(channels_.list.size(), std::vector<Sample>(psd.width));
-        if (!channels_.whole && !salvage) throw incomplete(psd.label());
-        whole = channels_.whole;
+        if (channels_.fault && !salvage) throw *channels_.fault;
+        whole = !channels_.fault;
     }
 
     /// Reads the next row. False where it has lost its first channel.

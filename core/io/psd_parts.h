@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/bytes.h"
+#include "model/error.h"
 #include "model/image.h"
 
 namespace probewarp {
@@ -64,7 +65,7 @@ class PsdChannel {
 struct PsdChannels {
     /// The colours, and then the alpha where there is one.
     std::vector<std::unique_ptr<PsdChannel>> list;
-    bool whole = true;  ///< false: the file ends before all its rows, as far as that can be told beforehand
+    std::optional<IncompleteFile> fault;  ///< that some of the rows, of whichever channels, are missing
 };
 
 /// Throws Error where nothing can be read of the picture.
