@@ -220,6 +220,8 @@ PsdChannels packed_channels(const Psd& psd) {
     return channels;
 }
 
+/// Inflates all of it once, to see that it is there and where the channels begin. Channels behind the last
+/// one of the picture are left alone: a small file may hold many that are large.
 PsdChannels deflated_channels(const Psd& psd) {
     const bool predicted = psd.compression == deflated_differences;
     if (predicted && psd.bits == 1) throw damaged(psd.label(), "it has differences of single bits");
@@ -227,7 +229,7 @@ PsdChannels deflated_channels(const Psd& psd) {
     Inflater inflater(psd.rows);
     std::vector<std::byte> row(psd.row_bytes());
     PsdChannels channels;
-    for (std::size_t c = 0; c < psd.channels; ++c) {
+    for (std::size_t c = 0; c <= wanted.back(); ++c) {
         if (std::find(wanted.begin(), wanted.end(), c) != wanted.end())
             channels.list.push_back(
                 std::make_unique<DeflatedChannel>(inflater, predicted, psd.bits, psd.label()));
@@ -237,9 +239,10 @@ PsdChannels deflated_channels(const Psd& psd) {
             if (channels.fault && c == 0 && y == 0) throw Error(channels.fault->what());
         }
     }
-    // Reads the checksum behind the last row.
-    if (const auto end = inflater.read(std::span(row).first(1));
-        !channels.fault && end != Inflater::Result::filled && end != Inflater::Result::ended)
+    if (channels.fault || wanted.back() + 1 < psd.channels) return channels;
+    // Behind the last row stands a checksum.
+    const Inflater::Result end = inflater.read(std::span(row).first(1));
+    if (end == Inflater::Result::truncated || end == Inflater::Result::bad)
         channels.fault = fault_of(end, psd.label());
     return channels;
 }

@@ -215,10 +215,19 @@ void store(std::span<const Sample> rgba, std::span<Stored<Sample>> to) {
         std::copy(rgba.begin(), rgba.end(), to.begin());
 }
 
+/// Throws where a row is damaged, so that a bad file does not cost the time that converting its colours
+/// takes.
+template <class Sample>
+void look_through(const Psd& psd) {
+    SampleRows<Sample> rows(psd, false);
+    for (std::size_t y = 0; y < psd.height; ++y) rows.next();
+}
+
 template <class Sample>
 Image read_pixels(const Psd& psd, bool salvage) {
     const bool on_white = psd.alpha && psd.mode != PsdMode::indexed && is_on_white<Sample>(psd, salvage);
     const std::unique_ptr<const ToSrgb> to_srgb = conversion<Sample>(psd);
+    if (to_srgb && !salvage) look_through<Sample>(psd);
     SampleRows<Sample> rows(psd, salvage);
     Image image = blank_image((long long)(psd.width), (long long)(psd.height), psd.bits > 8 ? 16 : 8);
     auto& pixels = std::get<std::vector<Stored<Sample>>>(image.rgba);

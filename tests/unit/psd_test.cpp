@@ -73,7 +73,7 @@ TEST(Psd, RawAndPacked) {
 TEST(Psd, Deflated) {
     const File planes = bytes({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0, 0, 0, 200});
     const std::vector<Rgba> meaning{{1, 5, 9, 255}, {2, 6, 10, 255}, {3, 7, 11, 255}, {4, 8, 12, 255}};
-    // The fourth channel is of no use, and has to be there all the same.
+    // The fourth channel is no part of the picture.
     EXPECT_EQ(pixels(decode(make_psd(
                   {.channels = 4, .width = 2, .height = 2, .rows = deflated(planes), .compression = 2}))),
               meaning);
@@ -465,9 +465,7 @@ TEST(Psd, EachCutIsRefused) {
                                       .compression = 1}),
                             "a.psd");
     expect_each_cut_refused(
-        make_psd(
-            {.channels = 4, .width = 2, .rows = deflated(bytes({1, 2, 3, 4, 5, 6, 7, 8})), .compression = 2}),
-        "a.psd");
+        make_psd({.width = 2, .rows = deflated(bytes({1, 2, 3, 4, 5, 6})), .compression = 2}), "a.psd");
 }
 
 // ---- salvaging ----
