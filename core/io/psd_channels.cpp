@@ -174,7 +174,7 @@ class DeflatedChannel final : public PsdChannel {
 
 // ---- all channels ----
 
-enum Compression { raw = 0, packed = 1, deflated = 2, deflated_differences = 3 };
+enum Packing { raw = 0, packed = 1, deflated = 2, deflated_differences = 3 };
 
 /// What has lost even the first row cannot be salvaged.
 std::optional<IncompleteFile> fault_of(const Psd& psd, std::uint64_t there, std::uint64_t needed,

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,13 @@ inline File psd_resource(int id, const File& data, std::string_view name = "") {
     const File length = be(1, name.size());
     return join({bytes_of("8BIM"), be(2, std::uint64_t(id)), length, bytes_of(name),
                  File(1 - name.size() % 2), be(4, data.size()), data, File(data.size() % 2)});
+}
+
+/// unit: in which Photoshop shows it, 1 or 2
+inline File psd_resolution(double x, double y, int unit) {
+    const auto fixed = [](double v) { return be(4, std::uint64_t(std::lround(v * 65536))); };
+    return psd_resource(1005, join({fixed(x), be(2, std::uint64_t(unit)), be(2, 1), fixed(y),
+                                    be(2, std::uint64_t(unit)), be(2, 1)}));
 }
 
 /// A layers' section that says how many there are, and nothing else of them.
