@@ -1,5 +1,4 @@
-// io/psd*.cpp: every mode, depth and packing of PSD and PSB, which channel is alpha, what is carried over,
-// and bad files.
+// io/psd*.cpp: every mode, depth and packing of PSD and PSB, which channel is alpha, and what is carried over.
 #include <gtest/gtest.h>
 
 #include <cmath>
