@@ -1,4 +1,5 @@
-// io/psd*.cpp: every mode, depth and packing of PSD and PSB, which channel is alpha, and what is carried over.
+// io/psd*.cpp: every mode, depth and packing of PSD and PSB, which channel is alpha, and what is carried
+// over.
 #include <gtest/gtest.h>
 
 #include <cmath>
