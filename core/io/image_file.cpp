@@ -22,7 +22,7 @@ constexpr std::array jpeg_endings{string_view(".jpg"), string_view(".jpeg"), str
                                   string_view(".jfif")};
 constexpr std::array bmp_endings{string_view(".bmp"), string_view(".dib")};
 constexpr std::array gif_endings{string_view(".gif")};
-constexpr std::array psd_endings{string_view(".psd")};
+constexpr std::array psd_endings{string_view(".psd"), string_view(".psb")};
 constexpr std::array pnm_endings{string_view(".ppm"), string_view(".pgm"), string_view(".pbm"),
                                  string_view(".pnm")};
 constexpr std::array tga_endings{string_view(".tga")};

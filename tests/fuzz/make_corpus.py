@@ -34,7 +34,7 @@ def images():
     for data in files.tga(5, 4), files.tga(9, 5, True):
         yield "tga", data
     yield "gif", files.gif(12, 10)
-    for data in files.psd(5, 3), files.psd(9, 3, True), files.psd(3, 2, bits=16):
+    for data in [files.psd(5, 3), files.psd(9, 3, True), files.psd(3, 2, bits=16)] + list(files.PSD.values()):
         yield "psd", data
     for data in files.PNM.values():
         yield "ppm", data

@@ -304,8 +304,9 @@ class BadFiles(unittest.TestCase):
                      + struct.pack("<HHHHB", 0, 0, 10000, 10000, 0) + b"\x08" + (b"\xff" + bytes(255)) * 9000 + b"\0\x3b")
         row = b"\x81\x00" * 78 + b"\xf1\x00"
         rows = 30000
-        self.refused("rows.psd", b"8BPS" + struct.pack(">H6xHIIHH", 1, 3, 10000, 10000, 8, 3) + bytes(12) + b"\0\1"
-                     + struct.pack(">H", len(row)) * rows + row * (rows - 1) + bytes(len(row) - 2) + b"\x7f\x00")
+        for mode in 3, 9:  # RGB, and Lab, whose conversion is slow
+            self.refused("rows.psd", b"8BPS" + struct.pack(">H6xHIIHH", 1, 3, 10000, 10000, 8, mode) + bytes(12) + b"\0\1"
+                         + struct.pack(">H", len(row)) * rows + row * (rows - 1) + bytes(len(row) - 2) + b"\x7f\x00")
         self.refused("bits.pbm", b"P1 10000 10000\n" + b"1" * (10**8 - 1) + b"x")
 
     def test_long_files_of_large_pictures(self):

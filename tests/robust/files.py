@@ -77,6 +77,43 @@ def psd(width, height, packed=False, bits=8):
     return header + struct.pack(">H", 0) + bytes(i * 7 & 255 for i in range(width * height * 3 * bits // 8))
 
 
+def psd_resource(number, data):
+    return b"8BIM" + struct.pack(">HHI", number, 0, len(data)) + data + bytes(len(data) % 2)
+
+
+def psd_of(mode, channels, bits=8, compression=0, large=False, layers=0):
+    """A small Photoshop file of any mode and packing, with what its sections can hold; `layers`: their count, as it is stored."""
+    width, height = 5, 3
+    row_bytes = (width * bits + 7) // 8
+    palette = bytes(range(256)) * 3 if mode == 2 else b""
+    resources = (psd_resource(1005, struct.pack(">IHHIHH", 300 << 16, 1, 1, 300 << 16, 1, 1)) + psd_resource(1039, bytes(130))
+                 + psd_resource(1047, b"\0\3") + psd_resource(1053, struct.pack(">II", 1, 2))
+                 + psd_resource(1057, struct.pack(">IBIII", 1, 1, 0, 0, 1)) + psd_resource(1064, struct.pack(">Id", 1, 2.0)))
+    wide = ">Q" if large else ">I"
+    block = struct.pack(wide, 2) + struct.pack(">h", layers)
+    section = struct.pack(wide, 0) + bytes(4) + b"8BIMLr16" + block if bits > 8 else block + bytes(4)
+    row = b"".join(bytes([i * 7 & 255]) for i in range(row_bytes))
+    if bits == 32:
+        row = struct.pack(">5f", 0, 0.25, 0.5, 1, 2)
+    rows = row * height * channels
+    if compression == 1:
+        packed = bytes([row_bytes - 1]) + row
+        rows = struct.pack(">I" if large else ">H", len(packed)) * height * channels + packed * height * channels
+    elif compression > 1:
+        rows = zlib.compress(rows)
+    return (b"8BPS" + struct.pack(">H6xHIIHH", 2 if large else 1, channels, height, width, bits, mode)
+            + struct.pack(">I", len(palette)) + palette + struct.pack(">I", len(resources)) + resources
+            + struct.pack(wide, len(section)) + section + struct.pack(">H", compression) + rows)
+
+
+PSD = {
+    "bitmap.psd": psd_of(0, 1, 1), "grey.psd": psd_of(1, 2, 8, 1, layers=-1), "indexed.psd": psd_of(2, 1),
+    "cmyk.psd": psd_of(4, 5, 8, 1, layers=-1), "cmyk-16.psd": psd_of(4, 4, 16), "inks.psd": psd_of(7, 3, 16),
+    "duotone.psd": psd_of(8, 1), "lab.psd": psd_of(9, 4, 8, layers=-1), "lab-16.psd": psd_of(9, 3, 16, 1),
+    "light.psd": psd_of(3, 4, 32, 1, layers=-1), "zip.psd": psd_of(3, 3, 8, 2), "zip-16.psd": psd_of(3, 3, 16, 3),
+    "zip-32.psd": psd_of(1, 1, 32, 3), "large.psb": psd_of(3, 4, 16, 1, True, -2), "large-zip.psb": psd_of(3, 3, 8, 3, True),
+}
+
 PNM = {
     "p1.pbm": b"P1 4 3\n0110 1001 0110",
     "p2.pgm": b"P2 2 2 255\n0 80 160 255\n",
@@ -173,7 +210,7 @@ def sound(program, folder):
         ("raw.tga", tga(5, 4)), ("packed.tga", tga(9, 5, True)),
         ("small.gif", gif(12, 10)), ("raw.psd", psd(5, 3)), ("packed.psd", psd(9, 3, True)), ("deep.psd", psd(3, 2, bits=16)),
         ("hand.probewarp", project()), ("painted.probewarp", archive(painted_members())),
-    ] + list(PNM.items())
+    ] + list(PSD.items()) + list(PNM.items())
     source = os.path.join(folder, "source.png")
     with open(source, "wb") as f:
         f.write(png(9, 8))

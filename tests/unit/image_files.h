@@ -201,7 +201,7 @@ inline File with_marker(const File& jpeg, const File& marker) {
     return join({File(jpeg.begin(), jpeg.begin() + 2), marker, File(jpeg.begin() + 2, jpeg.end())});
 }
 
-// ---- BMP, TGA, GIF, PSD ----
+// ---- BMP, TGA, GIF ----
 
 /// With a 40-byte header unless `core`. `between`: masks or a palette. `height` < 0: from the top down.
 inline File make_bmp(int width, int height, int bits, int compression, const File& between,
@@ -290,14 +290,6 @@ inline File make_gif(int width, int height, int left, int top, int frame_width, 
                  bytes({0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255}), before, bytes({0x2C}), two(left),
                  two(top), two(frame_width), two(frame_height), bytes({interlaced ? 0x40 : 0, 8}),
                  sub_blocks(lzw_data), bytes({0x3B})});
-}
-
-/// `data`: the merged picture from the compression word on.
-inline File make_psd(int channels, int width, int height, int bits, int mode, const File& data) {
-    const auto two = [](int v) { return be(2, std::uint64_t(v)); };
-    return join({bytes_of("8BPS"), two(1), be(6, 0), two(channels), be(4, std::uint64_t(height)),
-                 be(4, std::uint64_t(width)), two(bits), two(mode), be(4, 0), be(4, 4), be(4, 0), be(4, 0),
-                 data});
 }
 
 }  // namespace probewarp::testing

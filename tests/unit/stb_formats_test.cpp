@@ -184,51 +184,6 @@ TEST(Gif, StringsBeyondTheFrameCostNothing) {
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
 }
 
-// ---- PSD ----
-
-TEST(Psd, RawAndPacked) {
-    const File planes = bytes({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});  // 2 x 2, red, green, blue
-    const std::vector<Rgba> meaning{{1, 5, 9, 255}, {2, 6, 10, 255}, {3, 7, 11, 255}, {4, 8, 12, 255}};
-    EXPECT_EQ(pixels(decode(make_psd(3, 2, 2, 8, 3, join({be(2, 0), planes})))), meaning);
-    // 3 x 1, PackBits: literal, run, and a run after a no-op.
-    const File packed =
-        join({be(2, 1), be(2, 4), be(2, 2), be(2, 5), bytes({2, 1, 2, 3, 254, 7, 128, 255, 9, 0, 4})});
-    EXPECT_EQ(pixels(decode(make_psd(3, 3, 1, 8, 3, packed))),
-              (std::vector<Rgba>{{1, 7, 9, 255}, {2, 7, 9, 255}, {3, 7, 4, 255}}));
-    const Image deep = decode(make_psd(1, 2, 1, 16, 1, join({be(2, 1), be(2, 5), bytes({3, 1, 2, 3, 4})})));
-    EXPECT_EQ(deep.bits(), 16);
-    EXPECT_EQ(pixels(deep), (std::vector<Rgba>{{258, 258, 258, 65535}, {772, 772, 772, 65535}}));
-}
-
-TEST(Psd, AlphaMergedOntoWhiteOrNot) {
-    const auto one = [](int c, int alpha) {
-        return pixels(decode(make_psd(4, 1, 1, 8, 3, join({be(2, 0), bytes({c, 255, 200, alpha})}))))[0];
-    };
-    EXPECT_EQ(one(127, 128), (Rgba{0, 255, 145, 128}));  // 50 % of black, white and grey, on white
-    EXPECT_EQ(one(90, 128), (Rgba{90, 255, 200, 128})) << "too dark to have white in it";
-    EXPECT_EQ(one(90, 255), (Rgba{90, 255, 200, 255}));
-    EXPECT_EQ(one(90, 0), (Rgba{90, 255, 200, 0}));
-}
-
-TEST(Psd, BadOnesAreRefused) {
-    const File data = join({be(2, 0), bytes({1, 2, 3})});
-    ASSERT_EQ(error_of(make_psd(3, 1, 1, 8, 3, data), "a.psd"), "");
-    expect_refused(make_psd(3, 1, 1, 32, 3, data), "a.psd", "has 32 bits a channel");
-    expect_refused(make_psd(4, 1, 1, 8, 4, data), "a.psd", "is neither RGB nor grey");
-    expect_refused(make_psd(2, 1, 1, 8, 3, data), "a.psd", "too few or too many channels");
-    expect_refused(make_psd(3, 40000, 1, 8, 3, data), "a.psd", "is 40000 x 1 pixels");
-    expect_refused(make_psd(3, 9000, 9000, 8, 3, data), "a.psd", "is truncated");
-    expect_refused(make_psd(3, 1, 1, 8, 3, join({be(2, 3), bytes({1, 2, 3})})), "a.psd",
-                   "is packed in an unusual way");
-    const auto packed = [](const File& row) {
-        return make_psd(1, 2, 1, 8, 1, join({be(2, 1), be(2, row.size()), row}));
-    };
-    ASSERT_EQ(error_of(packed(bytes({1, 2, 3})), "a.psd"), "");
-    expect_refused(packed(bytes({2, 2, 3, 4})), "a.psd", "a row has the wrong length");
-    expect_refused(packed(bytes({1, 2})), "a.psd", "a row has the wrong length");
-    expect_refused(packed(bytes({0, 2})), "a.psd", "a row is too short");
-}
-
 // ---- PNM ----
 
 TEST(Pnm, OfEveryKind) {
@@ -330,12 +285,6 @@ TEST(EachCut, OfGifIsRefused) {
     std::vector<int> many(2000);
     for (std::size_t i = 0; i < many.size(); ++i) many[i] = int(i * i % 4);
     expect_each_cut_refused(make_gif(40, 50, 0, 0, 40, 50, false, {}, lzw(many)), "a.gif");
-}
-
-TEST(EachCut, OfPsdIsRefused) {
-    expect_each_cut_refused(make_psd(4, 5, 4, 16, 3, join({be(2, 0), File(160)})), "a.psd");
-    expect_each_cut_refused(
-        make_psd(1, 2, 2, 8, 1, join({be(2, 1), be(2, 3), be(2, 2), bytes({1, 2, 3, 255, 4})})), "a.psd");
 }
 
 TEST(EachCut, OfPnmIsRefused) {
