@@ -183,6 +183,10 @@ TEST(ProbesCsv, AnyEncoding) {
             expect_as_plain(utf16(signs, little, marked), "UTF-16");
             expect_as_plain(utf16(signs, little, marked) + "x", "UTF-16 with half a character behind it");
         }
+    const std::string at_once = plain.substr(plain.find("#probes"));
+    expect_as_plain("\xef\xbb\xbf" + at_once, "a mark before the line of the probes");
+    for (const bool little : {true, false})
+        expect_as_plain(utf16("sep=,\n" + at_once, little, true), "a mark before Excel's first line");
     EXPECT_NE(error_in(utf16(plain, true, true).substr(1)), "");
 }
 
