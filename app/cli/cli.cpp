@@ -14,6 +14,7 @@
 #include "io/image_file.h"
 #include "io/printable.h"
 #include "model/deform.h"
+#include "model/instruction_set.h"
 #include "model/weights.h"
 
 namespace probewarp {
@@ -149,6 +150,14 @@ void add_info(CLI::App& app, InfoOptions& o) {
     add_backend(*command, o.backend);
 }
 
+void heed_environment() {
+    try {
+        limit_instruction_set_by_environment();
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
+}
+
 int failed(int code, const std::string& message) {
     print_failure(message);
     return code;
@@ -177,6 +186,7 @@ int run_command_line(int argc, char** argv, int (*open_window)(const std::string
     add_info(app, info_options);
     try {
         app.parse(argc, argv);
+        heed_environment();
         if (!app.get_subcommands().empty() && app.count("--deform") > 0)
             throw UsageError("--deform: before a command it is nobody's; expected it behind render");
         if (app.got_subcommand("render"))

@@ -10,6 +10,7 @@
 #include "io/printable.h"
 #include "io/project.h"
 #include "model/deformation.h"
+#include "model/instruction_set.h"
 #include "render/context.h"
 #include "render/deform_trial.h"
 
@@ -94,7 +95,8 @@ Json description(const InfoOptions& o) {
               {"blend", document.blend},
               {"cancelled_vertices", deformation.cancelled},
               {"stiffness", document.stiffness && !is_blank(*document.stiffness)},
-              {"probes", std::move(probes)}};
+              {"probes", std::move(probes)},
+              {"instruction_set", instruction_sets().front()}};
     add_renderer(json, o.backend);
     if (picture.image.description.resolution)
         json["pixels_per_metre"] = {picture.image.description.resolution->x,
@@ -152,6 +154,7 @@ void print_text(const Json& json) {
                    p["rest"][1].get<double>(), p["now"][0].get<double>(), p["now"][1].get<double>(),
                    p["angle_degrees"].get<double>(), p["radius"].get<double>(),
                    p["painted"].get<bool>() ? ", painted" : "");
+    fmt::print("instruction set: {}\n", text("instruction_set"));
     fmt::print("renderer: {}\n", text("renderer"));
     print_deform(json["deform"]);
 }

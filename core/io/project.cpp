@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
@@ -13,130 +12,17 @@
 #include "io/naming_errors.h"
 #include "io/paint_file.h"
 #include "io/printable.h"
+#include "io/project_fields.h"
 #include "io/zip_archive.h"
 
 namespace probewarp {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr std::size_t max_json_bytes = std::size_t{16} << 20;
-constexpr int max_json_depth = 8;
-constexpr std::size_t max_probes = 10000;
-constexpr std::size_t max_json_objects = 2 * max_probes + 8;  // a probe and its paint, the project a few
-constexpr std::size_t max_json_lists = 3 * max_probes + 8;    // rest, now and the paint's extent of each
-constexpr std::size_t max_json_fields = 64;                   // of one object
-
 std::vector<std::byte> to_bytes(std::string_view text) {
     const auto bytes = std::as_bytes(std::span(text));
     return {bytes.begin(), bytes.end()};
 }
-
-/// Parses with a limit on depth, and without a key that stands twice in one object.
-Json parse(std::span<const std::byte> bytes) {
-    if (bytes.size() > max_json_bytes) throw Error("project.json is too long; expected at most 16 MiB");
-    std::vector<std::set<std::string>> keys(max_json_depth + 2);
-    std::size_t objects = 0, lists = 0;
-    const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
-        if (depth > max_json_depth)
-            throw Error(fmt::format("project.json is nested deeper than expected: at most {} levels",
-                                    max_json_depth));
-        // The library takes time in the square of an outer list's objects.
-        if (event == Json::parse_event_t::object_start && ++objects > max_json_objects)
-            throw Error(
-                fmt::format("project.json holds too much; expected at most {} objects", max_json_objects));
-        if (event == Json::parse_event_t::array_start && ++lists > max_json_lists)
-            throw Error(
-                fmt::format("project.json holds too much; expected at most {} lists", max_json_lists));
-        const auto level = std::size_t(depth);
-        if (event == Json::parse_event_t::object_start) keys[level + 1].clear();
-        if (event == Json::parse_event_t::key && !keys[level].insert(parsed.get<std::string>()).second)
-            throw Error(fmt::format("project.json has the field \"{}\" twice; expected it once",
-                                    printable(parsed.get<std::string>().substr(0, 80))));
-        if (keys[level].size() > max_json_fields)
-            throw Error(fmt::format("project.json has an object with too many fields; expected at most {}",
-                                    max_json_fields));
-        return true;
-    };
-    const auto* first = reinterpret_cast<const char*>(bytes.data());
-    try {
-        return Json::parse(first, first + bytes.size(), watch);
-    } catch (const Json::parse_error& error) {
-        throw Error(fmt::format("project.json is damaged at byte {}; expected JSON", error.byte));
-    } catch (const Json::out_of_range&) {
-        throw Error("project.json has a number that is too large; expected one that a double can hold");
-    }
-}
-
-/// An object's fields, taken one by one; what is left at the end is unknown.
-class Fields {
-  public:
-    Fields(const Json& json, std::string place) : json_(json), place_(std::move(place)) {
-        if (!json.is_object()) throw wrong("", "an object");
-    }
-
-    Error wrong(const std::string& field, std::string_view expected) const {
-        return Error(fmt::format("project.json: {} is wrong or missing; expected {}",
-                                 place_.empty() || field.empty() ? place_ + field : place_ + "." + field,
-                                 expected));
-    }
-    const Json& take(const char* field) {
-        const auto found = json_.find(field);
-        if (found == json_.end()) throw wrong(field, "it to be there");
-        taken_.insert(field);
-        return *found;
-    }
-    double number(const char* field, double least, double most) {
-        return checked(take(field), field, least, most);
-    }
-    int whole(const char* field, int least, int most) {
-        const Json& value = take(field);
-        if (!value.is_number_integer() || value < least || value > most)
-            throw wrong(field, fmt::format("a whole number from {} to {}", least, most));
-        return value.get<int>();
-    }
-    bool yes(const char* field) {
-        const Json& value = take(field);
-        if (!value.is_boolean()) throw wrong(field, "true or false");
-        return value.get<bool>();
-    }
-    std::string text(const char* field, std::size_t longest) {
-        const Json& value = take(field);
-        std::string text = value.is_string() ? value.get<std::string>() : std::string();
-        if (!value.is_string() || text.size() > longest || std::any_of(text.begin(), text.end(), [](char c) {
-                return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-            }))
-            throw wrong(field, fmt::format("a line of text of at most {} bytes", longest));
-        return text;
-    }
-    glm::dvec2 point(const char* field, double least = -max_probe_coordinate,
-                     double most = max_probe_coordinate) {
-        const Json& value = take(field);
-        if (!value.is_array() || value.size() != 2) throw wrong(field, "two numbers");
-        return {checked(value[0], field, least, most), checked(value[1], field, least, most)};
-    }
-    std::string place() const { return place_; }
-    void finish() const {
-        for (const auto& [key, value] : json_.items())
-            if (!taken_.contains(key))
-                throw Error(fmt::format(
-                    "project.json has the field \"{}\"{}, which this version does not know; expected "
-                    "a project of this version",
-                    printable(key.substr(0, 80)), place_.empty() ? "" : " in " + place_));
-    }
-
-  private:
-    double checked(const Json& value, const char* field, double least, double most) const {
-        if (!value.is_number() || !(value.get<double>() >= least) || !(value.get<double>() <= most))
-            throw wrong(field, fmt::format("a number from {:g} to {:g}", least, most));
-        return value.get<double>();
-    }
-
-    const Json& json_;
-    std::string place_;
-    std::set<std::string> taken_;
-};
 
 Colour colour_from(Fields& fields) {
     const std::string text = fields.text("colour", 7);
@@ -164,7 +50,7 @@ std::optional<PaintMember> paint_from(Fields& fields, const char* field) {
     if (json.is_null()) return {};
     Fields paint(json, fields.place().empty() ? field : fields.place() + "." + field);
     PaintMember member;
-    member.file = paint.text("file", 80);
+    member.file = paint.file("file");
     member.extent = paint.point("extent", 1e-6, 1e6);
     paint.finish();
     return member;
@@ -256,17 +142,25 @@ WeightSettings weights_from(Fields& fields, int format) {
     return weights;
 }
 
-Parsed parse_project(std::span<const std::byte> bytes) {
-    const Json json = parse(bytes);
-    Fields fields(json, "");
+int format_from(Fields& fields) {
     const Json& format = fields.take("format");
-    if (!format.is_number_integer() || format < 1 || format > project_format)
-        throw Error(fmt::format("project.json has format {}; this version reads formats 1 to {}",
-                                format.is_number_integer() ? format.dump() : "unknown", project_format));
-    const int version = format.get<int>();
+    const std::string known = fmt::format("this version reads formats 1 to {}", project_format);
+    if (format.is_number_integer() && format > project_format)
+        throw Error(fmt::format(
+            "was saved by a newer version of Probewarp, in format {}; {}: update Probewarp to open it",
+            format.dump(), known));
+    if (!format.is_number_integer() || format < 1)
+        throw fields.wrong("format", "a whole number without quotes, as " + known);
+    return format.get<int>();
+}
+
+Parsed parse_project(std::span<const std::byte> bytes) {
+    const Json json = parse_project_json(bytes);
+    Fields fields(json, "");
+    const int version = format_from(fields);
     Parsed parsed;
     Fields image(fields.take("image"), "image");
-    parsed.image_file = image.text("file", 80);
+    parsed.image_file = image.file("file");
     parsed.image_name = image.text("name", 1000);
     image.finish();
     parsed.document.mesh = mesh_from(fields.take("mesh"), version);
@@ -276,8 +170,8 @@ Parsed parse_project(std::span<const std::byte> bytes) {
         throw fields.wrong("blend", "a blend method that is known");
     if (version > 1) parsed.stiffness = paint_from(fields, "stiffness");
     const Json& probes = fields.take("probes");
-    if (!probes.is_array() || probes.size() > max_probes)
-        throw fields.wrong("probes", fmt::format("a list of at most {} probes", max_probes));
+    if (!probes.is_array() || probes.size() > max_project_probes)
+        throw fields.wrong("probes", fmt::format("a list of at most {} probes", max_project_probes));
     std::set<int> ids;
     for (std::size_t i = 0; i < probes.size(); ++i) {
         parsed.document.probes.push_back(
@@ -302,12 +196,54 @@ struct Archive {
     }
 };
 
+/// The folder that all names lie in, with its slash; empty where they share none.
+std::string shared_folder(std::span<const std::string> names) {
+    if (names.empty()) return {};
+    const std::string folder = names[0].substr(0, names[0].find('/') + 1);
+    const bool shared =
+        std::ranges::all_of(names, [&](const std::string& name) { return name.starts_with(folder); });
+    return shared ? folder : std::string();
+}
+
+/// What stands before every name of a project that was unpacked and zipped again with the folder it lay in,
+/// or with that one's folder too.
+std::string wrapping_folders(std::vector<std::string> names) {
+    constexpr int most = 4;  // a name may hold thousands
+    std::string wrapping;
+    for (int i = 0; i < most; ++i) {
+        const std::string folder = shared_folder(names);
+        for (std::string& name : names) name.erase(0, folder.size());
+        wrapping += folder;
+    }
+    return wrapping;
+}
+
+/// Some other program's file, or one that is no project any more: said before anything else is found wrong
+/// with it. wrapping: what stands before every name
+void check_kind(std::span<const std::string> names, const std::string& wrapping) {
+    const auto has = [&](const char* name) { return std::ranges::count(names, wrapping + name) > 0; };
+    if (has("mimetype") && has("project.json")) return;
+    throw Error(
+        fmt::format("is a ZIP archive without {}, so it is not a Probewarp project; expected a "
+                    "picture or a project",
+                    has("project.json") ? "a member mimetype"
+                    : has("mimetype")   ? "a member project.json"
+                                        : "the members mimetype and project.json"));
+}
+
 Archive open_archive(std::span<const std::byte> bytes) {
+    const std::vector<std::string> names = zip_names(bytes);
+    const std::string wrapping = wrapping_folders(names);
+    check_kind(names, wrapping);
     Archive archive;
     archive.members = read_zip(bytes, max_file_bytes);
-    const auto& members = archive.members;
-    if (members.empty() || members[0].name != "mimetype" || members[0].bytes != to_bytes(project_mimetype))
-        throw Error("is not a Probewarp project; expected a ZIP archive whose first member is its mimetype");
+    for (ZipMember& member : archive.members) member.name.erase(0, wrapping.size());
+    const std::vector<std::byte>& type = archive.bytes_of("mimetype");
+    if (type != to_bytes(project_mimetype))
+        throw Error(fmt::format(
+            "is not a Probewarp project, as its mimetype is \"{}\"; expected {}",
+            printable({reinterpret_cast<const char*>(type.data()), std::min<std::size_t>(type.size(), 80)}),
+            project_mimetype));
     return archive;
 }
 

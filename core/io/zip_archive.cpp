@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <set>
+#include <string_view>
 
 namespace probewarp {
 
@@ -19,36 +20,78 @@ struct Discard {
 template <class T>
 using Owned = std::unique_ptr<T, Discard>;
 
-bool stays_inside(const std::string& name) {
-    if (name.empty() || name.front() == '/' || name.back() == '/') return false;
-    if (std::any_of(name.begin(), name.end(),
-                    [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '\\' || c == ':'; }))
-        return false;
+/// The parts of a name between its slashes: at least one.
+std::vector<std::string_view> parts_of(std::string_view name) {
+    std::vector<std::string_view> parts;
     for (std::size_t start = 0; start <= name.size();) {
         const std::size_t end = std::min(name.find('/', start), name.size());
-        const std::string part = name.substr(start, end - start);
-        if (part.empty() || part == "." || part == "..") return false;
+        parts.push_back(name.substr(start, end - start));
         start = end + 1;
     }
-    return true;
+    return parts;
+}
+
+bool stays_inside(const std::string& name) {
+    if (std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == ':'; }))
+        return false;
+    return std::ranges::none_of(
+        parts_of(name), [](std::string_view part) { return part.empty() || part == "." || part == ".."; });
+}
+
+/// The name with the slashes and without the "./" that the format asks for; some archivers write others.
+std::string usual_name(std::string name) {
+    std::ranges::replace(name, '\\', '/');
+    while (name.starts_with("./") && name.size() > 2) name.erase(0, 2);
+    return name;
+}
+
+/// What desktops add to archives and folders: previews, places of icons, resource forks.
+bool is_added_by_desktop(std::string_view name) {
+    const std::vector<std::string_view> parts = parts_of(name);
+    const std::string_view file = parts.back();
+    return parts.front() == "__MACOSX" || file.starts_with("._") || file == ".DS_Store" ||
+           file == "Thumbs.db" || file == "desktop.ini";
+}
+
+/// Reads the numbers and signatures of an archive.
+struct Records {
+    std::span<const std::byte> bytes;
+
+    std::uint64_t number(std::size_t at, std::size_t count) const {
+        std::uint64_t value = 0;
+        for (std::size_t i = count; i-- > 0;)
+            value = value << 8 | std::to_integer<std::uint64_t>(bytes[at + i]);
+        return value;
+    }
+    bool is(std::size_t at, std::uint32_t signature) const { return number(at, 4) == signature; }
+};
+
+constexpr std::size_t end_size = 22, locator_size = 20, end64_size = 56;
+constexpr std::uint32_t end_record = 0x06054b50, locator_record = 0x07064b50, end64_record = 0x06064b50;
+
+/// How many members the end record at `at` promises, or the Zip64 one that its locator leads to.
+std::uint64_t promised_members(const Records& records, std::size_t at) {
+    if (at < locator_size || !records.is(at - locator_size, locator_record))
+        return records.number(at + 10, 2);
+    const std::size_t locator = at - locator_size;
+    const std::uint64_t end64 = records.number(locator + 8, 8);
+    if (end64 > locator || locator - end64 < end64_size || !records.is(end64, end64_record))
+        throw Error("is damaged; expected a ZIP archive whose end leads to its directory");
+    return std::max(records.number(end64 + 24, 8), records.number(end64 + 32, 8));
 }
 
 /// Refuses an archive whose end promises more members than fit, before libzip makes room for them all.
 void check_directory(std::span<const std::byte> bytes) {
-    constexpr std::size_t end_size = 22, longest_comment = 0xffff;
-    const auto byte = [&bytes](std::size_t at) { return std::to_integer<unsigned>(bytes[at]); };
-    const auto is = [&](std::size_t at, unsigned kind, unsigned version) {
-        return byte(at) == 'P' && byte(at + 1) == 'K' && byte(at + 2) == kind && byte(at + 3) == version;
-    };
+    constexpr std::size_t longest_comment = 0xffff;
     if (bytes.size() < end_size) throw Error("is truncated; expected a whole ZIP archive");
+    const Records records{bytes};
     const std::size_t first = bytes.size() - std::min(bytes.size(), end_size + longest_comment);
     for (std::size_t at = first; at + end_size <= bytes.size(); ++at) {
         // The end record is the one whose comment ends with the file: a picture's bytes may look like one
         // too.
-        const std::size_t comment = byte(at + 20) | byte(at + 21) << 8;
-        if (!is(at, 5, 6) || at + end_size + comment != bytes.size()) continue;
-        const bool large = at >= 20 && is(at - 20, 6, 7);  // the locator of a Zip64 directory
-        if (large || (byte(at + 10) | byte(at + 11) << 8) > max_zip_members)
+        if (!records.is(at, end_record) || at + end_size + records.number(at + 20, 2) != bytes.size())
+            continue;
+        if (promised_members(records, at) > max_zip_members)
             throw Error(fmt::format("has too many members; expected at most {}", max_zip_members));
     }
 }
@@ -66,14 +109,86 @@ Owned<zip_t> open_for_reading(std::span<const std::byte> bytes) {
     return archive;
 }
 
-std::vector<std::byte> read_member(zip_t* archive, zip_uint64_t index, std::size_t size,
-                                   const std::string& name) {
-    Owned<zip_file_t> file(zip_fopen_index(archive, index, 0));
-    std::vector<std::byte> bytes(file ? size : 0);
+/// How a member is packed, in words.
+std::string packing(unsigned method) {
+    switch (method) {
+        case ZIP_CM_DEFLATE64:
+            return "Deflate64";
+        case ZIP_CM_BZIP2:
+            return "bzip2";
+        case ZIP_CM_LZMA:
+            return "LZMA";
+        case 20:
+        case 93:
+            return "Zstandard";
+        case ZIP_CM_XZ:
+            return "XZ";
+        case ZIP_CM_PPMD:
+            return "PPMd";
+        default:
+            return fmt::format("method {}", method);
+    }
+}
+
+/// A member as the directory describes it.
+struct Entry {
+    zip_uint64_t index;
+    std::string name;  ///< the usual one
+    std::uint64_t size;
+    unsigned method;
+    bool encrypted;
+};
+
+/// All but folders and what desktops add.
+std::vector<Entry> entries_of(zip_t* archive) {
+    std::vector<Entry> entries;
+    const zip_int64_t count = zip_get_num_entries(archive, 0);
+    for (zip_uint64_t i = 0; i < zip_uint64_t(count); ++i) {
+        zip_stat_t stat;
+        constexpr zip_uint64_t needed =
+            ZIP_STAT_NAME | ZIP_STAT_SIZE | ZIP_STAT_COMP_METHOD | ZIP_STAT_ENCRYPTION_METHOD;
+        if (zip_stat_index(archive, i, ZIP_FL_ENC_GUESS, &stat) != 0 || (stat.valid & needed) != needed)
+            throw Error("is damaged; expected a whole ZIP archive");
+        std::string name = usual_name(stat.name);
+        const bool folder = name.ends_with('/') && stat.size == 0;
+        if (folder || is_added_by_desktop(name)) continue;
+        entries.push_back(
+            {i, std::move(name), stat.size, stat.comp_method, stat.encryption_method != ZIP_EM_NONE});
+    }
+    return entries;
+}
+
+void check_names(const std::vector<Entry>& entries) {
+    std::set<std::string> names;
+    for (const Entry& entry : entries) {
+        if (entry.name.empty()) throw Error("has a member without a name; expected one for each");
+        if (!stays_inside(entry.name))
+            throw Error("has a member whose name points out of the archive; expected names inside it");
+        if (!names.insert(entry.name).second)
+            throw Error(fmt::format("has two members named {}; expected one", entry.name));
+    }
+}
+
+void check_packing(const Entry& entry) {
+    if (entry.encrypted)
+        throw Error(
+            fmt::format("has an encrypted member {}; expected none: zip its members again without a "
+                        "password",
+                        entry.name));
+    if (entry.method != ZIP_CM_STORE && entry.method != ZIP_CM_DEFLATE)
+        throw Error(
+            fmt::format("has a member {} that is packed by {}; expected deflate or none: zip its "
+                        "members again with one of these",
+                        entry.name, packing(entry.method)));
+}
+
+std::vector<std::byte> read_member(zip_t* archive, const Entry& entry) {
+    const Owned<zip_file_t> file(zip_fopen_index(archive, entry.index, 0));
+    std::vector<std::byte> bytes(file ? std::size_t(entry.size) : 0);
     std::byte past{};
-    if (!file || zip_fread(file.get(), bytes.data(), size) != zip_int64_t(size) ||
+    if (!file || zip_fread(file.get(), bytes.data(), bytes.size()) != zip_int64_t(entry.size) ||
         zip_fread(file.get(), &past, 1) != 0)
-        throw Error(fmt::format("has a damaged member {}; expected a whole ZIP archive", name));
+        throw Error(fmt::format("has a damaged member {}; expected a whole ZIP archive", entry.name));
     return bytes;
 }
 
@@ -84,31 +199,27 @@ bool is_zip(std::span<const std::byte> bytes) {
     return bytes.size() >= 4 && std::equal(std::begin(magic), std::end(magic), bytes.begin());
 }
 
+std::vector<std::string> zip_names(std::span<const std::byte> bytes) {
+    check_directory(bytes);
+    const Owned<zip_t> archive = open_for_reading(bytes);
+    std::vector<std::string> names;
+    for (Entry& entry : entries_of(archive.get())) names.push_back(std::move(entry.name));
+    return names;
+}
+
 std::vector<ZipMember> read_zip(std::span<const std::byte> bytes, std::size_t limit) {
     check_directory(bytes);
     const Owned<zip_t> archive = open_for_reading(bytes);
-    const zip_int64_t count = zip_get_num_entries(archive.get(), 0);
+    const std::vector<Entry> entries = entries_of(archive.get());
+    check_names(entries);
     std::vector<ZipMember> members;
-    std::set<std::string> names;
     std::size_t total = 0;
-    for (zip_uint64_t i = 0; i < zip_uint64_t(count); ++i) {
-        zip_stat_t stat;
-        constexpr zip_uint64_t needed =
-            ZIP_STAT_NAME | ZIP_STAT_SIZE | ZIP_STAT_COMP_METHOD | ZIP_STAT_ENCRYPTION_METHOD;
-        if (zip_stat_index(archive.get(), i, ZIP_FL_ENC_GUESS, &stat) != 0 || (stat.valid & needed) != needed)
-            throw Error("is damaged; expected a whole ZIP archive");
-        const std::string name = stat.name;
-        if (!stays_inside(name))
-            throw Error("has a member whose name points out of the archive; expected names inside it");
-        if (!names.insert(name).second)
-            throw Error(fmt::format("has two members named {}; expected one", name));
-        if (stat.encryption_method != ZIP_EM_NONE)
-            throw Error(fmt::format("has an encrypted member {}; expected none", name));
-        if (stat.size > limit - total)
+    for (const Entry& entry : entries) {
+        check_packing(entry);
+        if (entry.size > limit - total)
             throw Error(fmt::format("holds more than expected: at most {} MiB", limit >> 20));
-        total += std::size_t(stat.size);
-        members.push_back({name, read_member(archive.get(), i, std::size_t(stat.size), name),
-                           stat.comp_method == ZIP_CM_STORE});
+        total += std::size_t(entry.size);
+        members.push_back({entry.name, read_member(archive.get(), entry), entry.method == ZIP_CM_STORE});
     }
     return members;
 }

@@ -184,7 +184,9 @@ void SumOthersRun(const WeightTiles& tiles, std::span<const DualComplex<float>> 
                   std::span<const DualComplex<float>> all, VertexRun run, OthersSum& others) {
     const Tag tag;
     const std::size_t lanes = hn::Lanes(tag), own = others.probe * tile_width;
-    for (std::size_t v = run.first; v < run.first + run.count; v += 2 * lanes) {
+    // To the end of the last block, whatever the vectors' width: no part of `others` is left as it was found.
+    const std::size_t end = (run.first + run.count + tile_block - 1) / tile_block * tile_block;
+    for (std::size_t v = run.first; v < end; v += 2 * lanes) {
         const Sums s = SumTwo(tiles, p, v), total = SumTwo(tiles, all, v);
         const Vector w = hn::Load(tag, column(tiles, v) + own);
         const Vector w2 = hn::Load(tag, column(tiles, v + lanes) + own);

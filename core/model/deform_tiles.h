@@ -19,6 +19,7 @@ struct OthersSum {
     std::size_t probe = 0;  ///< the one left out
     /// #tiles x 4 x 16: s0 and s1 of the others over the one's weight, as four real numbers: a blend does not
     /// see what all weights are divided by. Not a number where the one, turned, might cancel the others.
+    /// Behind the last vertex they are those of a vertex that follows the first probe alone.
     AlignedFloats values;
 };
 

@@ -7,6 +7,7 @@ The first byte of an image or project seed says how the target reads the rest: s
 import json
 import os
 import sys
+import zipfile
 import zlib
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "robust"))
@@ -43,7 +44,10 @@ def images():
 def csvs():
     head = b"#vertices ix,iy,x,y\n0,0,0,0\n#probes ix,iy,itheta,x,y,theta,radius\n"
     return [head, head + b"0,0,0,1,1,0.5,10\n", head + b"-100.5,20,0.1,1e2,-3,-6.28,120\r\n 1 , 2 , 3 , 4 , 5 , 6 , 7 \n",
-            b"#probes\n1,2,3,4,5,6,7", b"1,2,3\n"]
+            b"#probes\n1,2,3,4,5,6,7", b"1,2,3\n",
+            b"sep=;\r\n#probes;;;;;;\r\nix;iy;itheta;x;y;theta;radius\r\n1,5;-2;+0;3;4,25;5E-1;60;;\r\n;;;;;;\r\n",
+            b'\xef\xbb\xbf"#probes ix"\t"iy"\r"1,5"\t2\t3\t4\t5\t6\t7\r"1,2,3,4,5,6,7"\r',
+            "#probes\n1\t2\t3\t4\t5\t\u22126\t7\n".encode("utf-16")]
 
 
 def save(folder, data, number):
@@ -65,6 +69,9 @@ def main(folder):
     plain = dict(files.painted_fields(), stiffness=None)
     plain["probes"] = [dict(probe, paint=None) for probe in plain["probes"]]
     seeds += [b"\1" + json.dumps(plain).encode(), b"\1" + json.dumps(files.painted_fields()).encode()]
+    # As other archivers make them: in a folder, with folders and what desktops add, in another order, packed.
+    rezipped = [("dance/", b""), ("__MACOSX/._x", b"x")] + [("dance/" + n, d) for n, d in reversed(files.painted_members())]
+    seeds += [b"\2" + files.archive(rezipped), b"\0" + files.archive(rezipped, zipfile.ZIP_DEFLATED)]
     for i, data in enumerate(seeds):
         save(os.path.join(folder, "project"), data, i)
     for i, data in enumerate(csvs()):

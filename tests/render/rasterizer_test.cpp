@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <array>
@@ -14,20 +13,12 @@
 #include "exporting/export.h"
 #include "render/context.h"
 #include "scene.h"
+#include "support/every_instruction_set.h"
 
 namespace probewarp {
 namespace {
 
-/// Runs `test` with each instruction set that this machine has.
-template <class Test>
-void with_every_instruction_set(const Test& test) {
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        SCOPED_TRACE(hwy::TargetName(target));
-        hwy::SetSupportedTargetsForTest(target);
-        test();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-}
+using testing::with_every_instruction_set;
 
 struct Difference {
     std::size_t steps = 0;   ///< values that are up to one apart, of 255

@@ -2,6 +2,7 @@
 #include "model/blend_tiles.h"
 
 #include "pictures.h"
+#include "support/every_instruction_set.h"
 #include "weighed_scene.h"
 
 namespace probewarp {
@@ -15,7 +16,7 @@ using testing::expect_always;
 using testing::MovedVertices;
 using testing::WeighedScene;
 using testing::whole;
-using testing::with_every_target;
+using testing::with_every_instruction_set;
 
 MovedVertices by_blend(const WeighedScene& scene, const BlendMethod& method) {
     MovedVertices moved{std::vector<glm::vec2>(scene.rest.size()), 0};
@@ -54,14 +55,14 @@ void check_every_blend(const WeighedScene& scene) {
 }
 
 TEST(BlendTiles, AreTheBlendItself) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         expect_always("any number of vertices, 1 to 40 probes, many turns",
                       [] { check_every_blend(any_weighed_scene(*whole(1, 100), *whole(1, 40), 5)); });
     });
 }
 
 TEST(BlendTiles, AreTheBlendWhereOneProbeHasNearlyAllTheWeight) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         expect_always("shares of 1e-4 to 1e-30 for the others, or none", [] {
             WeighedScene scene = any_weighed_scene(*whole(1, 60), *whole(1, 6), 1);
             for (std::size_t v = 0; v < scene.rest.size(); ++v) {
@@ -78,7 +79,7 @@ TEST(BlendTiles, AreTheBlendWhereOneProbeHasNearlyAllTheWeight) {
 }
 
 TEST(BlendTiles, HaveNoAnswerWhereTheBlendHasNone) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         expect_always("whole and half turns, in place or away, opposite probes, probes on one place", [] {
             WeighedScene scene = any_weighed_scene(*whole(1, 100), 1, 0);
             scene.motions.clear(), scene.transformations.clear(), scene.weights.clear();
@@ -97,7 +98,7 @@ TEST(BlendTiles, HaveNoAnswerWhereTheBlendHasNone) {
 }
 
 TEST(BlendTiles, HaveNoRotationForAMirroredSquare) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         expect_always("seen in a mirror, no rotation of a square is nearer than another", [] {
             WeighedScene scene = any_weighed_scene(*whole(1, 50), 1, 0);
             scene.motions.clear(), scene.transformations.clear();
@@ -112,7 +113,7 @@ TEST(BlendTiles, HaveNoRotationForAMirroredSquare) {
 }
 
 TEST(BlendTiles, MoveARunAsTheWhole) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         expect_always("bit for bit, by every blend", [] {
             const WeighedScene scene = any_weighed_scene(*whole(1, 150), *whole(1, 9), 2);
             const int vertices = int(scene.rest.size()), first = *whole(0, vertices - 1);

@@ -4,12 +4,14 @@
 
 #include <oneapi/tbb/task_arena.h>
 
-#include <cstring>
+#include <cmath>
+#include <tuple>
 
 #include "generators.h"
 #include "math/blend.h"
 #include "model/deformation.h"
 #include "pictures.h"
+#include "support/every_instruction_set.h"
 #include "weighed_scene.h"
 
 namespace probewarp {
@@ -23,9 +25,10 @@ using testing::blank_document;
 using testing::degrees;
 using testing::expect_always;
 using testing::MovedVertices;
+using testing::weighed_scene_of;
 using testing::WeighedScene;
 using testing::whole;
-using testing::with_every_target;
+using testing::with_every_instruction_set;
 
 MovedVertices plainly(const WeighedScene& scene) {
     MovedVertices moved{scene.rest, 0};
@@ -63,7 +66,7 @@ MovedVertices by_dragging(const WeighedScene& scene, const WeightTiles& tiles, c
 }
 
 TEST(DeformTiles, IsThePlainFunctionUpToRounding) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         expect_always("any number of vertices, 1 to 70 probes, many turns", [] {
             const WeighedScene scene = any_weighed_scene(*whole(1, 200), *whole(1, 70), 5);
             const MovedVertices plain = plainly(scene), quick = by_tiles(scene);
@@ -76,21 +79,21 @@ TEST(DeformTiles, IsThePlainFunctionUpToRounding) {
 }
 
 TEST(DeformTiles, LeavesEveryVertexExactlyWhereNoProbeMoved) {
-    with_every_target([] {
-        expect_always("now = rest, in every bit", [] {
+    with_every_instruction_set([] {
+        expect_always("now = rest, exactly", [] {
             WeighedScene scene = any_weighed_scene(*whole(1, 100), *whole(1, 40), 1);
             const std::size_t probes = scene.probes();
             scene.motions.clear(), scene.transformations.clear();
             for (std::size_t i = 0; i < probes; ++i) scene.add(motion<double>(0, {3, 4}, {3, 4}));
             const MovedVertices moved = by_tiles(scene);
-            RC_ASSERT(std::memcmp(moved.now.data(), scene.rest.data(), scene.rest.size() * 8) == 0);
+            RC_ASSERT(moved.now == scene.rest);
             RC_ASSERT(moved.cancelled == 0u);
         });
     });
 }
 
 TEST(DeformTiles, CancelledVerticesFollowTheHeaviestAsInThePlainFunction) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         expect_always("a whole turn against none, equal weights or nearly", [] {
             WeighedScene scene = any_weighed_scene(*whole(1, 100), 3, 0);
             scene.motions.clear(), scene.transformations.clear();
@@ -125,7 +128,7 @@ TEST(DeformTiles, IsNeverNotANumber) {
             scene.rest.push_back({v, 2 * v});
             scene.weights.insert(scene.weights.end(), {w, v % 2 ? w : 0});
         }
-        with_every_target([&] {
+        with_every_instruction_set([&] {
             for (const glm::vec2 now : by_tiles(scene).now)
                 EXPECT_TRUE(std::isfinite(now.x) && std::isfinite(now.y)) << w;
         });
@@ -133,7 +136,7 @@ TEST(DeformTiles, IsNeverNotANumber) {
 }
 
 TEST(DeformTiles, ARunIsDeformedAsTheWhole) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         expect_always("the run's vertices anew, the others within its blocks alike, none beyond", [] {
             const int vertices = *whole(1, 150);
             WeighedScene scene = any_weighed_scene(vertices, *whole(1, 9), 2);
@@ -154,28 +157,62 @@ TEST(DeformTiles, ARunIsDeformedAsTheWhole) {
     });
 }
 
+/// One of the numbers that are kept of a vertex.
+float other_at(const OthersSum& others, std::size_t vertex, std::size_t row) {
+    return others.values[(vertex / tile_width * 4 + row) * tile_width + vertex % tile_width];
+}
+
+/// Whether two sums are the same at the vertices that there are: behind the last one nothing is promised, nor
+/// which of the many bit patterns stands for what is not a number.
+bool same(const OthersSum& a, const OthersSum& b, std::size_t vertices) {
+    if (a.values.size() != b.values.size()) return false;
+    for (std::size_t v = 0; v < vertices; ++v)
+        for (std::size_t row = 0; row < 4; ++row) {
+            const float x = other_at(a, v, row), y = other_at(b, v, row);
+            if (x != y && !(std::isnan(x) && std::isnan(y))) return false;
+        }
+    return true;
+}
+
 TEST(DeformTiles, IsTheSameByAnyNumberOfThreads) {
-    // 70 x 32 vertices of 64 probes: more than four times what one thread takes at least.
-    expect_always("bit for bit, all of the mesh and a run", [] {
-        const WeighedScene scene = any_weighed_scene(70 * 32 + *whole(0, 31), 64, 3);
-        const OthersSum others = sum_others(make_tiles(scene.weights, 64), scene.pose(), 7);
-        const auto all = [&] {
-            std::vector<glm::vec2> now(scene.rest.size());
-            const WeightTiles tiles = make_tiles(scene.weights, 64);
-            const OthersSum sums = sum_others(tiles, scene.pose(), 7);
-            // Bytes, since some of them may not be numbers.
-            RC_ASSERT(std::memcmp(sums.values.data(), others.values.data(), others.values.size() * 4) == 0);
-            deform_dlb_dragged(tiles, sums, scene.rest, scene.pose(), now);
-            return std::pair(by_tiles(scene), now);
-        };
-        const auto many = all();
-        oneapi::tbb::task_arena one(1);
-        RC_ASSERT(one.execute(all) == many);
+    // 70 x 32 vertices of 64 probes: more than four times what one thread takes at least. Few cases, whose
+    // failure is not made smaller: that takes long with so many weights, and tells no more.
+    const auto moved = [](const WeighedScene& scene) {
+        const WeightTiles tiles = make_tiles(scene.weights, 64);
+        const OthersSum others = sum_others(tiles, scene.pose(), 7);
+        return std::tuple(by_tiles(scene), by_dragging(scene, tiles, others), others);
+    };
+    with_every_instruction_set([&] {
+        for (const int more : {0, 1, 15, 16, 17, 31}) {
+            const WeighedScene scene = weighed_scene_of(unsigned(more), 70 * 32 + more, 64, 3);
+            const auto [at_once, dragged, others] = moved(scene);
+            oneapi::tbb::task_arena one(1);
+            const auto [alone, alone_dragged, alone_others] = one.execute([&] { return moved(scene); });
+            EXPECT_TRUE(at_once == alone) << more;
+            EXPECT_TRUE(dragged == alone_dragged) << more;
+            EXPECT_TRUE(same(others, alone_others, scene.rest.size())) << more;
+        }
+    });
+}
+
+TEST(DeformTiles, NothingIsLeftUnwrittenBehindTheLastVertex) {
+    with_every_instruction_set([] {
+        for (const int vertices : {1, 7, 8, 9, 16, 17, 31, 32, 33}) {
+            const WeighedScene scene = weighed_scene_of(3, vertices, 5, 1);
+            const WeightTiles tiles = make_tiles(scene.weights, 5);
+            const OthersSum others = sum_others(tiles, scene.pose(), 2);
+            // Such a vertex has no weight of the dragged probe: the others' sum over least_share.
+            const DualComplex<float> first = scene.transformations[0];
+            for (std::size_t v = scene.rest.size(); v < tiles.weights.size() / 5; ++v) {
+                EXPECT_FLOAT_EQ(other_at(others, v, 0), first.p0.real() / 1e-12f) << vertices << ", " << v;
+                EXPECT_FLOAT_EQ(other_at(others, v, 3), first.p1.imag() / 1e-12f) << vertices << ", " << v;
+            }
+        }
     });
 }
 
 TEST(DeformTiles, ADraggedProbeIsWhatAllProbesAreUpToRounding) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         expect_always("at the end of a drag, and back at its beginning", [] {
             WeighedScene scene = any_weighed_scene(*whole(1, 200), *whole(1, 40), 5);
             const std::size_t probe = std::size_t(*whole(0, int(scene.probes()) - 1));
@@ -193,7 +230,7 @@ TEST(DeformTiles, ADraggedProbeIsWhatAllProbesAreUpToRounding) {
 }
 
 TEST(DeformTiles, ADraggedProbeMayCancelTheOthersOrHaveNoWeight) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         expect_always("equal weights or nearly, none, or hardly any, turned against the others", [] {
             WeighedScene scene = any_weighed_scene(*whole(1, 100), 2, 0);
             scene.motions.clear(), scene.transformations.clear();

@@ -1,7 +1,6 @@
 // PNG out: every size, depth and compression comes back byte for byte, through strips and whole, and what is
 // made does not depend on how rows come.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 #include <libdeflate.h>
 #include <zlib.h>
 
@@ -13,6 +12,7 @@
 #include "io/formats.h"
 #include "io/image_encoding.h"
 #include "io/png_filter.h"
+#include "support/every_instruction_set.h"
 
 namespace probewarp {
 namespace {
@@ -250,17 +250,6 @@ std::vector<std::uint8_t> unfiltered(const std::vector<std::uint8_t>& filtered,
     return row;
 }
 
-/// Runs `check` with each instruction set in turn.
-template <class Check>
-void with_every_target(const Check& check) {
-    for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-        SCOPED_TRACE(hwy::TargetName(target));
-        hwy::SetSupportedTargetsForTest(target);
-        check();
-        hwy::SetSupportedTargetsForTest(0);
-    }
-}
-
 void expect_each_filter_is_the_specifications() {
     std::mt19937 random(seed);
     for (const std::size_t step : {1u, 2u, 3u, 4u, 6u, 8u})
@@ -280,7 +269,7 @@ void expect_each_filter_is_the_specifications() {
 }
 
 TEST(PngFilter, EachFilterIsTheSpecifications) {
-    with_every_target(expect_each_filter_is_the_specifications);
+    with_every_instruction_set(expect_each_filter_is_the_specifications);
 }
 
 void expect_that_the_least_sum_is_chosen() {
@@ -314,7 +303,7 @@ void expect_that_the_least_sum_is_chosen() {
     EXPECT_EQ(chosen(sub_or_up), 1);
 }
 
-TEST(PngFilter, TheLeastSumIsChosen) { with_every_target(expect_that_the_least_sum_is_chosen); }
+TEST(PngFilter, TheLeastSumIsChosen) { with_every_instruction_set(expect_that_the_least_sum_is_chosen); }
 
 TEST(PngFilter, TheChoiceIsTheSameWithEveryInstructionSet) {
     std::mt19937 random(seed);
@@ -331,7 +320,7 @@ TEST(PngFilter, TheChoiceIsTheSameWithEveryInstructionSet) {
                 sums[type] += std::uint64_t(std::abs(std::int8_t(out[i])));
         }
         const auto least = std::ranges::min_element(sums) - sums.begin();
-        with_every_target([&] {
+        with_every_instruction_set([&] {
             std::vector<std::uint8_t> out(bytes + 1);
             filter_row(row, above, 3, all_filters, out);
             EXPECT_EQ(out[0], least) << bytes;
@@ -340,7 +329,7 @@ TEST(PngFilter, TheChoiceIsTheSameWithEveryInstructionSet) {
 }
 
 TEST(PngFilter, TheAlphaIsDroppedFromEveryPixel) {
-    with_every_target([] {
+    with_every_instruction_set([] {
         for (std::size_t pixels = 1; pixels < 200; ++pixels) {
             std::vector<std::uint8_t> rgba(pixels * 4), rgb(pixels * 3), expected;
             for (std::size_t i = 0; i < rgba.size(); ++i) {

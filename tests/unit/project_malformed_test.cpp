@@ -61,9 +61,8 @@ TEST(MalformedProject, AWrongMimetype) {
     EXPECT_THAT(refusal(members), HasSubstr("is not a Probewarp project"));
     members[0].bytes = to_bytes("application/x-probewarp\n");
     EXPECT_THAT(refusal(members), HasSubstr("is not a Probewarp project"));
-    members = good_members();
-    std::swap(members[0], members[1]);  // not the first
-    EXPECT_THAT(refusal(members), HasSubstr("is not a Probewarp project"));
+    members[0].bytes = to_bytes("image/openraster");
+    EXPECT_THAT(refusal(members), HasSubstr("its mimetype is \"image/openraster\""));
 }
 
 TEST(MalformedProject, DoubledMembers) {
@@ -75,8 +74,8 @@ TEST(MalformedProject, DoubledMembers) {
 }
 
 TEST(MalformedProject, NamesThatPointOut) {
-    for (const std::string name : {"../evil", "a/../../evil", "..", ".", "/etc/passwd", "a\\b", "..\\evil",
-                                   "C:evil", "a//b", "a/./b", "folder/", "new\nline", ""}) {
+    for (const std::string name : {"../evil", "a/../../evil", "..", ".", "/etc/passwd", "\\etc", "..\\evil",
+                                   "./../evil", "C:evil", "a//b", "a/./b", "/", "folder/", "new\nline", ""}) {
         auto members = good_members();
         members.push_back({name, to_bytes("x")});
         EXPECT_NE(refusal(members), "") << name;
@@ -90,6 +89,8 @@ TEST(MalformedProject, MembersAndFieldsOfALaterVersion) {
     auto members = good_members();
     members.push_back({"layers.json", to_bytes("{}")});
     EXPECT_THAT(refusal(members), HasSubstr("has a member layers.json that this version does not know"));
+    members.back().name = "more\\layers.json";
+    EXPECT_THAT(refusal(members), HasSubstr("has a member more/layers.json that"));
     EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"sliders\": []"),
                 HasSubstr("the field \"sliders\""));
     EXPECT_THAT(refusal_with("\"cells\": 10", "\"cells\": 10, \"kind\": 1"), HasSubstr("\"kind\" in mesh"));
@@ -165,10 +166,56 @@ TEST(MalformedProject, NumbersThatAreNone) {
 }
 
 TEST(MalformedProject, AnotherFormat) {
-    for (const char* format : {"0", "3", "-1", "1.0", "\"1\"", "null", "18446744073709551617", "4294967297"})
-        EXPECT_THAT(refusal_with("\"format\": 1", std::string("\"format\": ") + format),
-                    HasSubstr("reads formats 1 to 2"))
-            << format;
+    const auto said = [](const std::string& format) {
+        return refusal_with("\"format\": 1", "\"format\": " + format);
+    };
+    for (const char* newer : {"3", "4294967297"}) {
+        EXPECT_THAT(said(newer), HasSubstr("was saved by a newer version of Probewarp, in format " +
+                                           std::string(newer) + "; this version reads formats 1 to 2"));
+        EXPECT_THAT(said(newer), HasSubstr("update Probewarp"));
+    }
+    for (const char* wrong : {"0", "-1", "1.0", "\"1\"", "\"2\"", "null", "[1]", "true"})
+        EXPECT_THAT(said(wrong),
+                    HasSubstr("a whole number without quotes, as this version reads formats 1 to 2"))
+            << wrong;
+    EXPECT_THAT(said("\"2\""), HasSubstr("format is the text \"2\"; expected"));
+    EXPECT_THAT(said("null"), HasSubstr("format is null; expected"));
+    EXPECT_THAT(said("18446744073709551617"), HasSubstr("reads formats 1 to 2"));
+}
+
+TEST(MalformedProject, WhatStandsInAWrongPlaceIsSaid) {
+    EXPECT_THAT(refusal_with("\"radius\": 10", "\"radius\": null"),
+                HasSubstr("probes[0].radius is null; expected a number from"));
+    EXPECT_THAT(refusal_with("[3, 4]", "[3, null]"),
+                HasSubstr("probes[0].now is [3,null]; expected numbers"));
+    EXPECT_THAT(refusal_with("\"radius\": 10", "\"reach\": 10"), HasSubstr("probes[0].radius is missing"));
+    EXPECT_THAT(refusal_with("{\"cells\": 10}", "null"), HasSubstr("mesh is null; expected an object"));
+    EXPECT_THAT(refusal_with("\"P\"", '"' + std::string(300, 'x') + '"'),
+                HasSubstr("is the text \"" + std::string(40, 'x') + "\"...; expected"));
+    EXPECT_THAT(refusal_with("[3, 4]", "[1, 2, 3, 4, 5]"),
+                HasSubstr("probes[0].now is a list of 5; expected"));
+    EXPECT_THAT(refusal_with("[3, 4]", "[\"3\", 4]"),
+                HasSubstr("probes[0].now is a list of 2; expected numbers"));
+    auto members = good_members();
+    for (const auto& [json, said] : {std::pair{"null", "project.json is null; expected an object"},
+                                     {"[1]", "project.json is [1]; expected an object"}}) {
+        members[1].bytes = to_bytes(json);
+        EXPECT_THAT(refusal(members), HasSubstr(said));
+    }
+}
+
+TEST(MalformedProject, NoNameInAMessageIsEmpty) {
+    EXPECT_THAT(refusal_with("\"file\": \"image.png\"", "\"file\": \"\""),
+                HasSubstr("image.file is the text \"\"; expected the name of a member"));
+    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"\": 1"),
+                HasSubstr("a field without a name; expected none"));
+    EXPECT_THAT(refusal_with("\"cells\": 10", "\"cells\": 10, \"\": 1"),
+                HasSubstr("a field without a name in mesh; expected none"));
+    EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": 1, \"\": 1, \"\": 2"),
+                HasSubstr("two fields without a name"));
+    auto members = good_members();
+    members.push_back({"", to_bytes("x")});
+    EXPECT_THAT(refusal(members), HasSubstr("a member without a name"));
 }
 
 TEST(MalformedProject, FieldsAndIdsThatStandTwice) {
@@ -187,10 +234,16 @@ TEST(MalformedProject, FieldsAndIdsThatStandTwice) {
 
 TEST(MalformedProject, JsonThatIsNone) {
     for (const std::string json :
-         {"", "{", "[]", "7", "null", "\"x\"", "{}", "{\"format\": 1}", "{} {}", "\xff\xfe{}", "{'a': 1}"}) {
+         {"", "{", "[]", "7", "null", "\"x\"", "{}", "{\"format\": 1}", "{} {}", "{'a': 1}"}) {
         auto members = good_members();
         members[1].bytes = to_bytes(json);
         EXPECT_THAT(refusal(members), HasSubstr("project.json")) << json;
+    }
+    auto members = good_members();
+    for (const std::string_view text :
+         {std::string_view("\xff\xfe{\0}\0", 6), std::string_view("\xfe\xff\0{\0}", 6)}) {
+        members[1].bytes = to_bytes(text);
+        EXPECT_THAT(refusal(members), HasSubstr("project.json is saved as UTF-16; expected UTF-8"));
     }
     EXPECT_NE(refusal_with("\"P\"", "\"\xff\""), "");     // no UTF-8
     EXPECT_NE(refusal_with("\"P\"", "\"\\ud800\""), "");  // half a pair
@@ -217,13 +270,16 @@ TEST(MalformedProject, MoreThanTheLibraryCanReadInTime) {
     EXPECT_THAT(refusal_with("\"format\": 1", "\"format\": " + fields + "}"), HasSubstr("too many fields"));
 }
 
-TEST(MalformedProject, AZip64Directory) {
-    Bytes archive = raw_zip(good_members());
-    Bytes locator(20);
-    locator[0] = std::byte{'P'}, locator[1] = std::byte{'K'}, locator[2] = std::byte{6},
-    locator[3] = std::byte{7};
-    archive.insert(archive.end() - 22, locator.begin(), locator.end());
-    EXPECT_THAT(refusal(archive), HasSubstr("too many members"));
+TEST(MalformedProject, AZip64DirectoryThatLies) {
+    const Bytes archive = raw_zip(good_members());
+    const auto with_end64 = [&](std::uint64_t members, std::uint64_t shift) {
+        return testing::with_zip64_end(archive, members, shift);
+    };
+    EXPECT_EQ(refusal(with_end64(3, 0)), "");
+    EXPECT_THAT(refusal(with_end64(5000, 0)), HasSubstr("too many members"));
+    EXPECT_THAT(refusal(with_end64(std::uint64_t{1} << 60, 0)), HasSubstr("too many members"));
+    for (const std::uint64_t shift : {std::uint64_t{1}, std::uint64_t{1} << 20, ~std::uint64_t{0} - 1000})
+        EXPECT_THAT(refusal(with_end64(3, shift)), HasSubstr("is damaged")) << shift;
 }
 
 TEST(MalformedProject, APicturesBytesMayLookLikeADirectory) {
@@ -271,6 +327,21 @@ TEST(MalformedProject, EncryptedMembers) {
         auto members = good_members();
         members[i].flags |= 1;
         EXPECT_THAT(refusal(members), HasSubstr("encrypted member " + members[i].name));
+    }
+}
+
+TEST(MalformedProject, MembersThatArePackedByOtherMeans) {
+    for (const auto& [method, name] : {std::pair{9u, "Deflate64"},
+                                       {12u, "bzip2"},
+                                       {14u, "LZMA"},
+                                       {93u, "Zstandard"},
+                                       {95u, "XZ"},
+                                       {98u, "PPMd"},
+                                       {77u, "method 77"}}) {
+        auto members = good_members();
+        members[1].method = method;
+        EXPECT_THAT(refusal(members), HasSubstr("has a member project.json that is packed by " +
+                                                std::string(name) + "; expected deflate"));
     }
 }
 

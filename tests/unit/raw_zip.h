@@ -42,10 +42,11 @@ inline RawMember deflated(const std::string& name, const Bytes& content, std::ui
     return {name, packed, 1u << 11, 8, size, std::uint32_t(checksum)};
 }
 
+inline void put(Bytes& out, int count, std::uint64_t value) {
+    for (int i = 0; i < count; ++i) out.push_back(std::byte(value >> (8 * i) & 255));
+}
+
 inline Bytes raw_zip(const std::vector<RawMember>& members) {
-    const auto put = [](Bytes& out, int count, std::uint64_t value) {
-        for (int i = 0; i < count; ++i) out.push_back(std::byte(value >> (8 * i) & 255));
-    };
     const auto put_text = [](Bytes& out, std::string_view text) {
         for (const char c : text) out.push_back(std::byte(c));
     };
@@ -87,6 +88,29 @@ inline Bytes raw_zip(const std::vector<RawMember>& members) {
     put(archive, 4, directory.size());
     put(archive, 4, start);
     put(archive, 2, 0);
+    return archive;
+}
+
+/// The archive, which has no comment, with a Zip64 end before its own, as archivers write that do not know
+/// beforehand how much there will be. members: said to be in it; shift: of where it says that its end is
+inline Bytes with_zip64_end(Bytes archive, std::uint64_t members, std::uint64_t shift) {
+    const Bytes end(archive.end() - 22, archive.end());
+    archive.resize(archive.size() - 22);
+    const auto at = [&](std::size_t place) { return std::to_integer<std::uint64_t>(end[place]); };
+    const std::size_t here = archive.size(), start = at(16) | at(17) << 8 | at(18) << 16;
+    put(archive, 4, 0x06064b50);
+    put(archive, 8, 44);  // of what follows
+    put(archive, 4, 45 | 45 << 16);
+    put(archive, 8, 0);  // disks
+    put(archive, 8, members);
+    put(archive, 8, members);
+    put(archive, 8, here - start);
+    put(archive, 8, start);
+    put(archive, 4, 0x07064b50);
+    put(archive, 4, 0);
+    put(archive, 8, here + shift);
+    put(archive, 4, 1);
+    archive.insert(archive.end(), end.begin(), end.end());
     return archive;
 }
 

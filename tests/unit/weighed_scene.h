@@ -1,29 +1,12 @@
-// Vertices with any weights, and every instruction set to deform them with.
+// Vertices with any weights, and what moves them.
 #pragma once
 
-#include <hwy/targets.h>
-
 #include <random>
-#include <set>
 
 #include "generators.h"
 #include "model/deform_tiles.h"
 
 namespace probewarp::testing {
-
-/// Runs `check` with each instruction set in turn.
-template <class Check>
-void with_every_target(Check check) {
-    std::set<std::string> names;
-    for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        EXPECT_STREQ(deform_target(), hwy::TargetName(target));
-        names.insert(deform_target());
-        check();
-        hwy::SetSupportedTargetsForTest(0);
-    }
-    EXPECT_TRUE(names.contains(hwy::TargetName(HWY_STATIC_TARGET)));  // what any machine has
-}
 
 /// Some vertices, their weights, and what moves them; values as the meshes and schemes give them.
 struct WeighedScene {
@@ -41,9 +24,11 @@ struct WeighedScene {
     }
 };
 
-inline WeighedScene any_weighed_scene(int vertices, int probes, double turns) {
+/// Vertices and their weights at random, and what moves them: probe i turns by angle_of(i).
+template <class AngleOf>
+WeighedScene weighed_scene(unsigned seed, int vertices, int probes, const AngleOf& angle_of) {
     WeighedScene scene;
-    std::mt19937 random(unsigned(*whole(0, 1 << 30)));
+    std::mt19937 random(seed);
     std::uniform_real_distribution<double> place(0, 8192), way(-1000, 1000), share(0, 1);
     for (int v = 0; v < vertices; ++v) scene.rest.push_back({place(random), place(random)});
     for (int v = 0; v < vertices * probes; ++v)
@@ -52,9 +37,20 @@ inline WeighedScene any_weighed_scene(int vertices, int probes, double turns) {
         scene.weights[std::size_t(v * probes + int(random() % unsigned(probes)))] = 1;
     for (int i = 0; i < probes; ++i) {
         const std::complex<double> rest(place(random) - 4096, place(random) - 2500);
-        scene.add(motion(*angle(turns), rest, rest + std::complex<double>(way(random), way(random))));
+        scene.add(motion(angle_of(i), rest, rest + std::complex<double>(way(random), way(random))));
     }
     return scene;
+}
+
+inline WeighedScene any_weighed_scene(int vertices, int probes, double turns) {
+    const auto seed = unsigned(*whole(0, 1 << 30));
+    return weighed_scene(seed, vertices, probes, [&](int) { return *angle(turns); });
+}
+
+/// The same scene for the same seed, outside of properties too. The probes' angles differ, up to `turns`.
+inline WeighedScene weighed_scene_of(unsigned seed, int vertices, int probes, double turns) {
+    return weighed_scene(seed, vertices, probes,
+                         [&](int i) { return (2.0 * i / probes - 1) * turns * 2 * std::numbers::pi; });
 }
 
 struct MovedVertices {
