@@ -334,7 +334,8 @@ Outcome take(App& app, const InputEvent& event) {
 bool waits(const App& app, const InputEvent& event, Outcome before) {
     const bool character = event.kind == InputEvent::Kind::character;
     const bool key = event.kind == InputEvent::Kind::key && !is_modifier(event.code);
-    if ((character || key) && (app.input.frames_to_settle > 0 || app.number.wanted != 0)) return true;
+    const bool settles = app.input.frames_to_settle > 0 || app.number.wanted != 0 || app.number.starts;
+    if ((character || key) && settles) return true;
     if (before == Outcome::looked_at) return true;
     if (before != Outcome::typed || character || event.kind == InputEvent::Kind::move) return false;
     if (event.kind != InputEvent::Kind::key) return true;

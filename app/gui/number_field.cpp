@@ -166,13 +166,15 @@ void draw_unit(App& app, const NumberField& field, ImVec2 from, ImVec2 to, float
                                         faded(app.theme.muted, ImGui::GetStyle().Alpha), field.unit);
 }
 
-/// Below the field, so that it hides none of what is typed.
+/// Below the field, so that it hides none of what is typed, and within the window.
 void explain_refusal(App& app, const NumberField& field, ImVec2 from, ImVec2 to) {
-    ImGui::SetNextWindowPos({from.x, to.y + app.px(4)});
+    const std::string text = fmt::format("This is no number. Escape brings {} back.",
+                                         shown_number(app.number.before, field.decimals));
+    const float width = ImGui::CalcTextSize(text.c_str()).x + app.px(28);
+    ImGui::SetNextWindowPos({std::min(from.x, ImGui::GetIO().DisplaySize.x - width), to.y + app.px(4)});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {app.px(10), app.px(6)});
     ImGui::BeginTooltip();
-    ImGui::Text("This is no number. Escape brings %s back.",
-                shown_number(app.number.before, field.decimals).c_str());
+    ImGui::TextUnformatted(text.c_str());
     ImGui::EndTooltip();
     ImGui::PopStyleVar();
 }
@@ -352,6 +354,7 @@ void end_number_fields(App& app) {
     edit.stops = edit.arriving;
     // A field that is not there any more is typed in no longer.
     if (edit.id != 0 && edit.drawn != ImGui::GetFrameCount()) edit.id = 0;
+    if (edit.id == 0) edit.starts = false;
     if (edit.wanted != 0 && window_of(edit, edit.wanted) == 0) edit.wanted = 0;
     edit.key = FieldKey::none;
 }
