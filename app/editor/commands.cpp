@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <utility>
 
 #include "editor/comparison.h"
 #include "editor/paint_commands.h"
@@ -212,13 +213,19 @@ constexpr Command all[] = {
     {"Help", "About Probewarp", {}, nullptr, &ask<Request::about>},
 };
 
-constexpr Alias second_keys[] = {{{'Y', true}, "Redo"}, {{key_backspace}, "Delete"}, {{'0'}, "Fit"}};
+constexpr Alias second_keys[] = {
+    {{'Y', true}, "Redo"}, {{key_backspace}, "Delete"}, {{'0'}, "Fit"}, {{'+'}, "Zoom in"}};
 
-void nudge(Editor& editor, glm::dvec2 way) {
+void nudge(Editor& editor, glm::dvec2 way, bool held) {
     Probe* probe = selected_probe(editor);
     if (!probe || probe->locked) return;
     probe->now += way;
+    // The step that a held key has begun is made anew: held keys are one step.
+    const Nudge last = std::exchange(editor.nudge, {});
+    if (held && last.probe == probe->id && last.step == editor.history.at) undo(editor.history);
+    const std::size_t before = editor.history.at;
     commit(editor, "Nudge " + probe->name);
+    if (editor.history.at != before) editor.nudge = {probe->id, editor.history.at};
 }
 
 }  // namespace
@@ -249,7 +256,7 @@ void run(Editor& editor, const Command& command) {
         editor.notice = std::string(why_not) + ".";
 }
 
-bool press_key(Editor& editor, const Shortcut& key) {
+bool press_key(Editor& editor, const Shortcut& key, bool held) {
     if (key == Shortcut{key_escape}) {
         cancel(editor);
         return true;
@@ -274,16 +281,16 @@ bool press_key(Editor& editor, const Shortcut& key) {
     const double step = key.shift ? 10 : 1;
     switch (key.key) {
         case key_left:
-            nudge(editor, {-step, 0});
+            nudge(editor, {-step, 0}, held);
             return true;
         case key_right:
-            nudge(editor, {step, 0});
+            nudge(editor, {step, 0}, held);
             return true;
         case key_up:
-            nudge(editor, {0, -step});
+            nudge(editor, {0, -step}, held);
             return true;
         case key_down:
-            nudge(editor, {0, step});
+            nudge(editor, {0, step}, held);
             return true;
         default:
             return false;

@@ -52,8 +52,9 @@ struct Alias {
 std::span<const Alias> aliases();
 
 /// Further keys for commands of the table, and keys without a menu: nudging with the arrows, Escape.
-/// Returns whether the key meant something.
-bool press_key(Editor& editor, const Shortcut& key);
+/// `held` says that the key repeats, or that another arrow is down already: then a nudge goes on with the
+/// step that the last one made. Returns whether the key meant something.
+bool press_key(Editor& editor, const Shortcut& key, bool held = false);
 
 const Command& find_command(std::string_view label);
 

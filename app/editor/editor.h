@@ -85,6 +85,12 @@ struct Task {
     std::function<Document()> run;
 };
 
+/// The step that the last press of an arrow key made.
+struct Nudge {
+    int probe = 0;         ///< id; 0: none
+    std::size_t step = 0;  ///< of the history
+};
+
 struct Tool;
 
 /// What of the weights is shown over the picture.
@@ -107,6 +113,7 @@ struct Editor {
     Hit hover;
     std::optional<glm::dvec2> pointer;  ///< canvas pixels; empty while it is elsewhere
     std::optional<Gesture> gesture;
+    Nudge nudge;
     bool show_probes = true, show_mesh = false;
     ShownWeights shown_weights = ShownWeights::none;
     bool shown_by_brush = false;  ///< they go when the brush is put down

@@ -113,7 +113,9 @@ void release(Editor& editor, const PointerEvent& event) {
 
 void double_click(Editor& editor, const PointerEvent& event) {
     if (event.button != Button::left || event.space || !has_picture(editor)) return;
-    if (editor.tool != &find_tool("select") || hit_test(editor, event.at).part != Part::none ||
+    // On the circle of a probe's reach there is room for another probe; on its disc and knob there is none.
+    const Part part = hit_test(editor, event.at).part;
+    if (editor.tool != &find_tool("select") || part == Part::disc || part == Part::knob ||
         only_compares(editor, event))
         return;
     if (const int id = put_probe(editor, event.at); id != 0)

@@ -15,9 +15,11 @@
 #include "gui/deform_job.h"
 #include "gui/file_dialog.h"
 #include "gui/fonts.h"
+#include "gui/input.h"
 #include "gui/jobs.h"
 #include "gui/last_frame.h"
 #include "gui/messages.h"
+#include "gui/number_field.h"
 #include "gui/samples.h"
 #include "gui/shown_weights.h"
 #include "gui/theme.h"
@@ -77,6 +79,8 @@ struct App {
     Theme theme = dark_theme();
     Fonts fonts;
     float scale = 1;
+    Input input;
+    NumberEdit number;
     glm::dvec2 cursor{0};         ///< window pixels: at the last event
     Shown shown;                  ///< as it was last drawn, or tried to be
     GLuint shown_texture = 0;     ///< 0 before the first time
@@ -107,8 +111,6 @@ struct App {
     ImGuiID field = 0;       ///< the item of the panel field being edited
     int renaming = 0;        ///< probe id
     int listed = 0;          ///< probe id: chosen when the list was last drawn
-    int typed_cells = 0;     ///< of the mesh, while they are being typed
-    bool typing_cells = false;
     std::string new_name;
     std::string field_label;  ///< of the panel field being edited
     bool quit = false;

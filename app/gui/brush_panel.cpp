@@ -50,6 +50,26 @@ void percent_row(App& app, const char* label, double& part, double least) {
     ImGui::PopID();
 }
 
+void axis_fields(App& app) {
+    MirrorAxis axis = mirror_axis(app.editor);
+    double degrees = axis.angle * 180 / std::numbers::pi;
+    row_label(app, "Axis", label_width);
+    const float width = (ImGui::GetContentRegionAvail().x - app.px(8)) / 2;
+    const bool moved = number_field(app, "##axis", axis.point.x,
+                                    {.unit = "x",
+                                     .measure = NumberUnit::pixels,
+                                     .width = width,
+                                     .step = 0.5,
+                                     .least = -1e6,
+                                     .most = 1e6});
+    ImGui::SameLine(0, app.px(8));
+    const bool turned = number_field(
+        app, "##angle", degrees,
+        {.unit = "°", .measure = NumberUnit::degrees, .width = width, .step = 0.5, .least = -80, .most = 80});
+    axis.angle = degrees * std::numbers::pi / 180;
+    if (moved || turned) app.editor.axis = axis;
+}
+
 }  // namespace
 
 void draw_brush_section(App& app) {
@@ -62,8 +82,13 @@ void draw_brush_section(App& app) {
     if (brush.mode != BrushMode::smooth && brush.mode != BrushMode::erase)
         percent_row(app, "Value", brush.value, 0);
     row_label(app, "Size", label_width);
-    number_field(app, "##size", brush.radius, "px", ImGui::GetContentRegionAvail().x, 0.5, min_brush_radius,
-                 max_brush_radius);
+    number_field(app, "##size", brush.radius,
+                 {.unit = "px",
+                  .measure = NumberUnit::pixels,
+                  .width = ImGui::GetContentRegionAvail().x,
+                  .step = 0.5,
+                  .least = min_brush_radius,
+                  .most = max_brush_radius});
     percent_row(app, "Strength", brush.strength, 1);
     percent_row(app, "Hardness", brush.hardness, 0);
     percent_row(app, "Spacing", brush.spacing, 1);
@@ -73,16 +98,7 @@ void draw_brush_section(App& app) {
     ImGui::SameLine(0, app.px(12));
     check_box(app, "Mirror", editor.mirror, false);
     tooltip("Strokes are painted on both sides of the axis (X), onto the probe that mirrors the chosen one");
-    if (!editor.mirror) return;
-    MirrorAxis axis = mirror_axis(editor);
-    double degrees = axis.angle * 180 / std::numbers::pi;
-    row_label(app, "Axis", label_width);
-    const float width = (ImGui::GetContentRegionAvail().x - app.px(8)) / 2;
-    const bool moved = number_field(app, "##axis", axis.point.x, "x", width, 0.5, -1e6, 1e6);
-    ImGui::SameLine(0, app.px(8));
-    const bool turned = number_field(app, "##angle", degrees, "°", width, 0.5, -80, 80);
-    axis.angle = degrees * std::numbers::pi / 180;
-    if (moved || turned) editor.axis = axis;
+    if (editor.mirror) axis_fields(app);
 }
 
 namespace {

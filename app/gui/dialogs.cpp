@@ -5,6 +5,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "editor/paint_commands.h"
@@ -87,8 +88,9 @@ void draw_format_settings(App& app, float width) {
     }
     if (format && format->name == "jpeg") {
         row_label(app, "Quality", 92);
-        ImGui::SetNextItemWidth(width);
-        ImGui::SliderInt("##quality", &dialog.encode.quality, 1, 100);
+        double quality = dialog.encode.quality;
+        if (slider_field(app, "##quality", quality, "", width, 1, 100))
+            dialog.encode.quality = int(std::lround(quality));
         row_label(app, "", 92);
         ImGui::TextDisabled(dialog.transparent ? "JPEG has no transparency: white is put behind." : "");
     }
@@ -99,7 +101,13 @@ void draw_export_settings(App& app) {
     const float width = ImGui::GetContentRegionAvail().x - app.px(92);
     double percent = dialog.settings.scale * 100;
     row_label(app, "Scale", 92);
-    if (number_field(app, "##scale", percent, "%", width, 0.5, 0.1, 10000))
+    if (number_field(app, "##scale", percent,
+                     {.unit = "%",
+                      .measure = NumberUnit::percent,
+                      .width = width,
+                      .step = 0.5,
+                      .least = 0.1,
+                      .most = 10000}))
         dialog.settings.scale = percent / 100;
 
     const int choices[] = {1, 2, 3, 4, 8};
@@ -176,6 +184,7 @@ void draw_export_dialog(App& app) {
     const bool entered = ImGui::InputText(
         "##path", &dialog.path, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     if (ImGui::IsItemEdited()) dialog.overwrite_asked = false;
+    tab_stop(app);
     ImGui::SameLine();
     if (ImGui::Button("Browse…", {app.px(88), 0})) {
         ImGui::CloseCurrentPopup();

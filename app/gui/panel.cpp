@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "editor/commands.h"
 #include "editor/comparison.h"
@@ -151,16 +152,43 @@ void draw_probes(App& app) {
     if (put_probe(app.editor, middle) != 0) commit(app.editor, "Add probe");
 }
 
+/// The two fields of a place; a pair that is pasted into the first fills both.
 void point_fields(App& app, const char* label, glm::dvec2& point, const Probe& probe) {
     row_label(app, label, 52);
     const float width = (ImGui::GetContentRegionAvail().x - app.px(8)) / 2;
+    NumberField field{.unit = "x",
+                      .measure = NumberUnit::pixels,
+                      .width = width,
+                      .step = 0.5,
+                      .least = -farthest,
+                      .most = farthest,
+                      .partner = &point.y};
     ImGui::PushID(label);
-    number_field(app, "##x", point.x, "x", width, 0.5, -farthest, farthest);
+    number_field(app, "##x", point.x, field);
     is_step(app, "Move " + probe.name);
     ImGui::SameLine(0, app.px(8));
-    number_field(app, "##y", point.y, "y", width, 0.5, -farthest, farthest);
+    field.unit = "y";
+    field.partner = nullptr;
+    number_field(app, "##y", point.y, field);
     is_step(app, "Move " + probe.name);
     ImGui::PopID();
+}
+
+void turn_field(App& app, Probe& probe) {
+    row_label(app, "Turn", 52);
+    double degrees = probe.angle * 180 / std::numbers::pi;
+    const int turns = int(std::trunc(degrees / 360));
+    const std::string unit =
+        turns == 0 ? "°" : fmt::format("{} × + {:.1f} °", turns, degrees - 360.0 * turns);
+    if (number_field(app, "##turn", degrees,
+                     {.unit = unit.c_str(),
+                      .measure = NumberUnit::degrees,
+                      .width = ImGui::GetContentRegionAvail().x,
+                      .step = 0.5,
+                      .least = -1e6,
+                      .most = 1e6}))
+        probe.angle = degrees * std::numbers::pi / 180;
+    is_step(app, "Turn " + probe.name);
 }
 
 void draw_chosen_probe(App& app) {
@@ -171,16 +199,15 @@ void draw_chosen_probe(App& app) {
     ImGui::BeginDisabled(probe->locked);
     point_fields(app, "Now", probe->now, *probe);
     point_fields(app, "Rest", probe->rest, *probe);
-    row_label(app, "Turn", 52);
-    double degrees = probe->angle * 180 / std::numbers::pi;
-    const int turns = int(std::trunc(degrees / 360));
-    const std::string unit =
-        turns == 0 ? "°" : fmt::format("{} × + {:.1f} °", turns, degrees - 360.0 * turns);
-    if (number_field(app, "##turn", degrees, unit.c_str(), ImGui::GetContentRegionAvail().x, 0.5, -1e6, 1e6))
-        probe->angle = degrees * std::numbers::pi / 180;
-    is_step(app, "Turn " + probe->name);
+    turn_field(app, *probe);
     row_label(app, "Reach", 52);
-    number_field(app, "##reach", probe->radius, "px", ImGui::GetContentRegionAvail().x, 0.5, 1, farthest);
+    number_field(app, "##reach", probe->radius,
+                 {.unit = "px",
+                  .measure = NumberUnit::pixels,
+                  .width = ImGui::GetContentRegionAvail().x,
+                  .step = 0.5,
+                  .least = 1,
+                  .most = farthest});
     is_step(app, "Reach of " + probe->name);
     ImGui::EndDisabled();
     if (probe->locked && ImGui::IsWindowHovered() &&
@@ -244,20 +271,26 @@ void mesh_slider(App& app) {
     constexpr double least = 10, most = max_cells;
     MeshSettings mesh = app.editor.document.mesh;
     double part = std::cbrt(std::clamp((mesh.cells - least) / (most - least), 0.0, 1.0));
-    const bool moved = slim_slider(app, "##mesh", part, ImGui::GetContentRegionAvail().x - app.px(48));
+    const float number = app.px(look::slider_number);
+    const bool moved =
+        slim_slider(app, "##mesh", part, ImGui::GetContentRegionAvail().x - number - app.px(8));
     is_step(app, "Mesh density");
     tooltip("Cells along the picture's longer side");
     if (moved) mesh.cells = int(std::lround(least + (most - least) * part * part * part));
     ImGui::SameLine(0, app.px(8));
-    ImGui::SetNextItemWidth(app.px(40));
+    double cells = mesh.cells;
     // Taken when it is whole: on the way to 1000 nobody wants meshes of 1 and 10 cells.
-    if (!app.typing_cells) app.typed_cells = mesh.cells;
-    ImGui::InputInt("##cells", &app.typed_cells, 0, 0);
-    app.typing_cells = ImGui::IsItemActive();
+    const bool typed = number_field(app, "##cells", cells,
+                                    {.width = number,
+                                     .step = 0.5,
+                                     .least = min_cells,
+                                     .most = max_cells,
+                                     .decimals = 0,
+                                     .bare = true,
+                                     .when_left = true});
     is_step(app, "Mesh density");
-    const bool entered = ImGui::IsItemDeactivatedAfterEdit();
-    if (entered) mesh.cells = std::clamp(app.typed_cells, min_cells, max_cells);
-    if (moved || entered) set_mesh(app, mesh);
+    if (typed) mesh.cells = int(std::lround(cells));
+    if (moved || typed) set_mesh(app, mesh);
 }
 
 std::string islands_text(const Binding& binding) {
@@ -294,12 +327,20 @@ void outline_rows(App& app) {
     const float width = ImGui::GetContentRegionAvail().x - app.px(76);
     row_label(app, "Threshold", 76);
     double threshold = mesh.threshold;
-    if (number_field(app, "##threshold", threshold, "of 255", width, 0.25, 0, 254))
+    if (number_field(
+            app, "##threshold", threshold,
+            {.unit = "of 255", .width = width, .step = 0.25, .least = 0, .most = 254, .decimals = 0}))
         mesh.threshold = int(std::lround(threshold));
     is_step(app, "Outline threshold");
     tooltip("Pixels with more alpha than this are visible");
     row_label(app, "Margin", 76);
-    number_field(app, "##margin", mesh.margin, "px", width, 0.25, 0, max_mesh_margin);
+    number_field(app, "##margin", mesh.margin,
+                 {.unit = "px",
+                  .measure = NumberUnit::pixels,
+                  .width = width,
+                  .step = 0.25,
+                  .least = 0,
+                  .most = max_mesh_margin});
     is_step(app, "Outline margin");
     tooltip("Cells that come this near to a visible pixel stay");
     ImGui::EndDisabled();
@@ -314,14 +355,21 @@ void draw_limits(App& app) {
     const bool has_exponent = find_weight_scheme(weights.scheme)->has_exponent;
     ImGui::BeginDisabled(!has_exponent);
     row_label(app, "Exponent", 76);
-    number_field(app, "##exponent", weights.exponent, "", width, 0.01, min_exponent, max_exponent);
+    number_field(app, "##exponent", weights.exponent,
+                 {.width = width, .step = 0.01, .least = min_exponent, .most = max_exponent, .decimals = 2});
     is_step(app, "Exponent");
     tooltip(has_exponent ? "How quickly weights fall with distance; 2 is usual"
                          : "Only weights by distance have an exponent");
     ImGui::EndDisabled();
     row_label(app, "Falloff", 76);
-    number_field(app, "##falloff", weights.falloff, weights.falloff > 0 ? "× reach" : "none", width, 0.02, 0,
-                 max_falloff);
+    number_field(app, "##falloff", weights.falloff,
+                 {.unit = weights.falloff > 0 ? "× reach" : "none",
+                  .measure = NumberUnit::times,
+                  .width = width,
+                  .step = 0.02,
+                  .least = 0,
+                  .most = max_falloff,
+                  .decimals = 2});
     is_step(app, "Falloff limit");
     tooltip("How many reaches away a probe's weight fades to nothing; 0: nowhere");
     row_label(app, "Follows", 76);
@@ -338,6 +386,18 @@ void draw_limits(App& app) {
     }
     tooltip("How many probes a vertex may follow");
     outline_rows(app);
+}
+
+/// Leaving a field makes what it did a step, however it was left; Escape takes it back.
+void end_left_field(App& app) {
+    const bool took_back = std::exchange(app.number.took_back, false);
+    if (!app.editor.gesture || app.editor.gesture->kind != Gesture::Kind::field ||
+        ImGui::GetActiveID() == app.field)
+        return;
+    if (took_back)
+        cancel(app.editor);
+    else
+        end_field(app.editor, app.field_label);
 }
 
 }  // namespace
@@ -364,10 +424,7 @@ void draw_panel(App& app) {
     draw_deformation(app);
     draw_weights_section(app);
     draw_limits(app);
-    // Leaving a field makes what it did a step, however it was left.
-    if (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field &&
-        ImGui::GetActiveID() != app.field)
-        end_field(app.editor, app.field_label);
+    end_left_field(app);
     ImGui::GetWindowDrawList()->AddLine({display.x - width, top}, {display.x - width, top + height},
                                         app.theme.line);
     ImGui::End();

@@ -28,7 +28,8 @@ void apply_theme(const Theme& theme, float scale);
 
 /// The layout's sizes at scale 1, pixels.
 namespace look {
-inline constexpr float menu = 32, status = 26, tools = 48, panel = 308, row = 28, field = 26, label = 64;
+inline constexpr float menu = 32, status = 26, tools = 48, panel = 308, row = 28, field = 26, label = 64,
+                       slider_number = 52;
 }
 
 }  // namespace probewarp

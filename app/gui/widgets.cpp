@@ -1,8 +1,5 @@
 #include "gui/widgets.h"
 
-#include <fmt/format.h>
-#include <imgui_internal.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -122,18 +119,23 @@ bool slim_slider(App& app, const char* id, double& part, float width) {
 
 bool slider_field(App& app, const char* id, double& value, const char* unit, float width, double least,
                   double most) {
+    const bool coarse = most > 10;
+    ImGui::PushID(id);
     double part = (value - least) / (most - least);
-    const float track = width - app.px(48);
-    const bool changed = slim_slider(app, id, part, track);
-    if (changed) value = least + part * (most - least);
-    const std::string text =
-        most > 10 ? fmt::format("{:.0f} {}", value, unit) : fmt::format("{:.2f}{}", value, unit);
-    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
-    const float text_width = ImGui::CalcTextSize(text.c_str()).x;
-    ImGui::GetWindowDrawList()->AddText(
-        {std::round(from.x + width - text_width), std::round((from.y + to.y - ImGui::GetFontSize()) / 2)},
-        app.theme.text, text.c_str());
-    return changed;
+    const bool moved = slim_slider(app, "##track", part, width - app.px(look::slider_number + 8));
+    if (moved) value = least + part * (most - least);
+    ImGui::SameLine(0, app.px(8));
+    const bool typed = number_field(app, "##number", value,
+                                    {.unit = unit,
+                                     .measure = *unit == '%' ? NumberUnit::percent : NumberUnit::none,
+                                     .width = app.px(look::slider_number),
+                                     .step = coarse ? 0.5 : 0.005,
+                                     .least = least,
+                                     .most = most,
+                                     .decimals = coarse ? 0 : 2,
+                                     .bare = true});
+    ImGui::PopID();
+    return moved || typed;
 }
 
 bool check_box(App& app, const char* label, bool& on, bool first) {
@@ -167,37 +169,6 @@ bool begin_combo(App& app, const char* id, const char* shown, float width) {
     list->ChannelsMerge();
     ImGui::PopStyleColor(2);
     return open;
-}
-
-bool number_field(App& app, const char* id, double& value, const char* unit, float width, double step,
-                  double least, double most) {
-    double edited = value;
-    // ImGui centres a dragged number; columns of numbers read better from the left, so it is drawn here
-    // instead.
-    const bool typing = ImGui::TempInputIsActive(ImGui::GetID(id));
-    const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
-    if (!typing) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_BLACK_TRANS);
-    ImGui::SetNextItemWidth(width);
-    ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, std::max(1.0f, std::floor(app.px(1))));
-    const bool changed =
-        ImGui::DragScalar(id, ImGuiDataType_Double, &edited, float(step), nullptr, nullptr, "%.1f");
-    ImGui::PopStyleVar();
-    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
-    if (!typing) {
-        ImGui::PopStyleColor();
-        ImGui::GetWindowDrawList()->AddText(
-            {from.x + app.px(8), std::round((from.y + to.y - ImGui::GetFontSize()) / 2)}, ink,
-            fmt::format("{:.1f}", value).c_str());
-    }
-    if (ImGui::IsItemActive() && ImGui::IsMouseDragging(0)) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    const float unit_width = app.fonts.small->CalcTextSizeA(app.fonts.small->FontSize, FLT_MAX, 0, unit).x;
-    ImGui::GetWindowDrawList()->AddText(
-        app.fonts.small, app.fonts.small->FontSize,
-        {to.x - unit_width - app.px(8), std::round((from.y + to.y - app.fonts.small->FontSize) / 2)},
-        app.theme.muted, unit);
-    if (!changed || !std::isfinite(edited)) return false;
-    value = std::clamp(edited, least, most);
-    return true;
 }
 
 }  // namespace probewarp

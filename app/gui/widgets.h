@@ -6,6 +6,7 @@
 #include <string>
 
 #include "gui/app.h"
+#include "gui/number_field.h"
 
 namespace probewarp {
 
@@ -27,13 +28,8 @@ bool section(App& app, const char* id, const char* title, bool& open, bool* add 
 /// A label at the left of a row; the widget follows on the same line.
 void row_label(App& app, const char* text, float width);
 
-/// A number with one decimal that can be dragged or typed, with its unit inside at the right. Returns whether
-/// it changed; never gives a value that is not finite or outside [least, most].
-bool number_field(App& app, const char* id, double& value, const char* unit, float width, double step,
-                  double least, double most);
-
-/// A slim slider with a round grip over [least, most] and its value in text at the right. Returns whether it
-/// changed.
+/// A slim slider with a round grip over [least, most], and its value at the right as a field without a frame.
+/// Returns whether it changed.
 bool slider_field(App& app, const char* id, double& value, const char* unit, float width, double least,
                   double most);
 

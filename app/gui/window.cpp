@@ -8,15 +8,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <future>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "editor/commands.h"
 #include "gui/actions.h"
 #include "gui/app.h"
 #include "gui/canvas.h"
 #include "gui/dialogs.h"
+#include "gui/input.h"
 #include "gui/panels.h"
 #include "render/context.h"
 
@@ -35,174 +33,6 @@ float wanted_scale(GLFWmonitor* monitor) {
     float x = 1, y = 1;
     if (monitor) glfwGetMonitorContentScale(monitor, &x, &y);
     return std::clamp(x, 0.5f, 4.0f);
-}
-
-/// The pointer in canvas pixels, with the keys that are held. Where it was at the event: asked now, the
-/// display would say where it has got to since, and a quick hand would press beside what it meant.
-PointerEvent pointer_event(const App& app, Button button = Button::left) {
-    const auto held = [&app](int left, int right) {
-        return glfwGetKey(app.window, left) == GLFW_PRESS || glfwGetKey(app.window, right) == GLFW_PRESS;
-    };
-    PointerEvent event;
-    event.at = app.cursor - glm::dvec2(canvas_corner(app).x, canvas_corner(app).y);
-    event.button = button;
-    event.shift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
-    event.ctrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
-    event.alt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
-    event.space = held(GLFW_KEY_SPACE, GLFW_KEY_SPACE);
-    return event;
-}
-
-/// Whether a press there is the canvas's: inside it, with nothing above it.
-bool on_canvas(const App& app, glm::dvec2 at) {
-    if (app.modal || at.x < 0 || at.y < 0 || at.x >= app.editor.canvas_size.x ||
-        at.y >= app.editor.canvas_size.y)
-        return false;
-    const ImVec2 p{float(at.x) + canvas_corner(app).x, float(at.y) + canvas_corner(app).y};
-    return std::none_of(app.overlays.begin(), app.overlays.end(), [p](const auto& box) {
-        return p.x >= box.first.x && p.y >= box.first.y && p.x < box.second.x && p.y < box.second.y;
-    });
-}
-
-void on_move(GLFWwindow* window, double x, double y) {
-    App& app = app_of(window);
-    app.wake();
-    app.cursor = {x, y};
-    const PointerEvent event = pointer_event(app);
-    const bool drags = app.editor.gesture && app.editor.gesture->kind != Gesture::Kind::field;
-    if (drags || on_canvas(app, event.at))
-        move(app.editor, event);
-    else {
-        app.editor.pointer.reset();
-        app.editor.hover = {};
-    }
-}
-
-void on_button(GLFWwindow* window, int which, int action, int mods) {
-    ImGui_ImplGlfw_MouseButtonCallback(window, which, action, mods);
-    static double last_press = -1;
-    static glm::dvec2 last_place{0};
-    App& app = app_of(window);
-    app.wake();
-    if (which > GLFW_MOUSE_BUTTON_MIDDLE) return;
-    const Button button = which == GLFW_MOUSE_BUTTON_LEFT     ? Button::left
-                          : which == GLFW_MOUSE_BUTTON_MIDDLE ? Button::middle
-                                                              : Button::right;
-    const PointerEvent event = pointer_event(app, button);
-    if (action == GLFW_RELEASE) return release(app.editor, event);
-    if (!on_canvas(app, event.at)) return;
-    if (app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field) end_gesture(app);
-    const glm::dvec2 way = event.at - last_place;
-    const double now = glfwGetTime();
-    const bool twice =
-        button == Button::left && now - last_press < 0.4 && std::hypot(way.x, way.y) < app.px(5);
-    last_press = button == Button::left && !twice ? now : -1;
-    last_place = event.at;
-    if (twice)
-        double_click(app.editor, event);
-    else
-        press(app.editor, event);
-}
-
-void on_scroll(GLFWwindow* window, double across, double steps) {
-    ImGui_ImplGlfw_ScrollCallback(window, across, steps);
-    App& app = app_of(window);
-    app.wake();
-    const PointerEvent event = pointer_event(app);
-    if (on_canvas(app, event.at)) scroll(app.editor, event, steps);
-}
-
-int editor_key(int key) {
-    switch (key) {
-        case GLFW_KEY_ESCAPE:
-            return key_escape;
-        case GLFW_KEY_DELETE:
-            return key_delete;
-        case GLFW_KEY_BACKSPACE:
-            return key_backspace;
-        case GLFW_KEY_LEFT:
-            return key_left;
-        case GLFW_KEY_RIGHT:
-            return key_right;
-        case GLFW_KEY_UP:
-            return key_up;
-        case GLFW_KEY_DOWN:
-            return key_down;
-        case GLFW_KEY_KP_ADD:
-            return '=';
-        case GLFW_KEY_KP_SUBTRACT:
-            return '-';
-        default:
-            return key > 0 && key < 127 ? key : 0;
-    }
-}
-
-/// The key as the keyboard's layout labels it, so that Ctrl+Z is where the Z is.
-int layout_key(int key, int scancode) {
-    const char* name = key >= GLFW_KEY_A && key <= GLFW_KEY_Z ? glfwGetKeyName(key, scancode) : nullptr;
-    if (name && name[0] >= 'a' && name[0] <= 'z' && name[1] == '\0') return name[0] - 'a' + 'A';
-    return key;
-}
-
-/// ImGui looks at keys once a frame, so that a key pressed and released between two frames would be lost: its
-/// release is kept for the next frame.
-struct KeyRelease {
-    int key, scancode, mods;
-};
-std::vector<int> pressed_this_frame;
-std::vector<KeyRelease> late_releases;
-
-void hand_key_to_toolkit(GLFWwindow* window, int key, int scancode, int action, int mods) {
-    const bool just_pressed =
-        std::find(pressed_this_frame.begin(), pressed_this_frame.end(), key) != pressed_this_frame.end();
-    if (action == GLFW_RELEASE && just_pressed) return late_releases.push_back({key, scancode, mods});
-    if (action == GLFW_PRESS) pressed_this_frame.push_back(key);
-    ImGui_ImplGlfw_KeyCallback(window, key, scancode, action, mods);
-}
-
-void release_late_keys(App& app) {
-    pressed_this_frame.clear();
-    for (const KeyRelease& late : std::exchange(late_releases, {})) {
-        ImGui_ImplGlfw_KeyCallback(app.window, late.key, late.scancode, GLFW_RELEASE, late.mods);
-        app.wake();
-    }
-}
-
-void on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
-    hand_key_to_toolkit(window, key, scancode, action, mods);
-    App& app = app_of(window);
-    app.wake();
-    if (action == GLFW_RELEASE || app.modal || (mods & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return;
-    const Shortcut shortcut{editor_key(layout_key(key, scancode)), (mods & GLFW_MOD_CONTROL) != 0,
-                            (mods & GLFW_MOD_SHIFT) != 0};
-    const bool field = app.editor.gesture && app.editor.gesture->kind == Gesture::Kind::field;
-    if (field || ImGui::GetIO().WantTextInput) {
-        // While something is typed, only the commands for files are keys; they take the number as it stands.
-        const bool for_files =
-            shortcut.ctrl && std::string_view("SEONQ").find(char(shortcut.key)) != std::string_view::npos;
-        if (!for_files) return;
-        end_gesture(app);
-    }
-    if (shortcut.key != 0) press_key(app.editor, shortcut);
-}
-
-void on_character(GLFWwindow* window, unsigned character) {
-    ImGui_ImplGlfw_CharCallback(window, character);
-    app_of(window).wake();
-}
-
-void on_enter(GLFWwindow* window, int entered) {
-    ImGui_ImplGlfw_CursorEnterCallback(window, entered);
-    App& app = app_of(window);
-    app.wake();
-    if (!entered) app.editor.pointer.reset();
-}
-
-void on_focus(GLFWwindow* window, int focused) {
-    ImGui_ImplGlfw_WindowFocusCallback(window, focused);
-    App& app = app_of(window);
-    app.wake();
-    if (!focused) end_gesture(app);
 }
 
 void on_close(GLFWwindow* window) {
@@ -286,13 +116,7 @@ GLFWwindow* open_window(float scale) {
 }
 
 void set_callbacks(GLFWwindow* window) {
-    glfwSetCursorPosCallback(window, &on_move);
-    glfwSetMouseButtonCallback(window, &on_button);
-    glfwSetScrollCallback(window, &on_scroll);
-    glfwSetKeyCallback(window, &on_key);
-    glfwSetCharCallback(window, &on_character);
-    glfwSetCursorEnterCallback(window, &on_enter);
-    glfwSetWindowFocusCallback(window, &on_focus);
+    set_input_callbacks(window);
     glfwSetWindowCloseCallback(window, &on_close);
     glfwSetDropCallback(window, &on_drop);
     glfwSetWindowRefreshCallback(window, &on_damage);
@@ -358,7 +182,9 @@ void draw_frame(App& app) {
     if (!app.fonts.text) rebuild_fonts(app);
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    place_mouse(app);
     ImGui::NewFrame();
+    begin_number_fields(app);
     app.overlays.clear();
     const ImVec2 display = ImGui::GetIO().DisplaySize, corner = canvas_corner(app);
     const float panel = has_picture(app.editor) ? app.px(look::panel) : 0;
@@ -382,6 +208,7 @@ void draw_frame(App& app) {
     draw_about(app);
     draw_progress(app);
     draw_messages(app);
+    end_number_fields(app);
     app.modal = is_busy(app) ||
                 ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel) ||
                 app.file_dialog.open || app.export_dialog.open || app.levels_dialog.open || app.about_open ||
@@ -418,13 +245,15 @@ void run(App& app) {
     const bool leaves_at_once = std::getenv("PROBEWARP_QUIT_AFTER_FIRST_FRAME") != nullptr;
     const bool opens = is_busy(app);
     while (!app.quit) {
+        begin_polling(app);
         wait_for_events(app);
+        end_polling(app);
+        hand_on_input(app);
         advance_jobs(app);
         handle_requests(app);
         set_title(app);
         draw_frame(app);
         if (leaves_at_once && (!opens || app.shown.picture)) return;
-        release_late_keys(app);
         if (app.frames_wanted > 0)
             --app.frames_wanted;
         else if (wants_trial(app))
@@ -450,6 +279,7 @@ int run_window(const std::string& path, DeformBy deform_by) {
     app.renderer_label = renderer_name();
     use_fonts(app, toolkit.fonts.get());
     const ToolkitBackends backends(app.window);
+    set_up_toolkit_input(app);
     set_callbacks(app.window);
     run(app);
     glfwHideWindow(app.window);  // a thread that is in the middle of something may take seconds to end

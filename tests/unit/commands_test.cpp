@@ -189,6 +189,53 @@ TEST_F(CommandsTest, ArrowsNudgeByOneAndByTen) {
     EXPECT_EQ(steps(), 10u);
 }
 
+TEST_F(CommandsTest, AHeldArrowIsOneStep) {
+    open_with({probe_at({100, 80}, {100, 80}), probe_at({200, 80}, {200, 80})});
+    editor.selected = 1;
+    press_key(editor, {key_right});
+    for (int k = 0; k < 20; ++k) press_key(editor, {key_right}, true);
+    EXPECT_EQ(probe().now, glm::dvec2(121, 80));
+    EXPECT_EQ(steps(), 1u);
+    press_key(editor, {key_down});  // let go, and pressed anew
+    press_key(editor, {key_down, false, true}, true);
+    EXPECT_EQ(probe().now, glm::dvec2(121, 91));
+    EXPECT_EQ(steps(), 2u);
+    undo_step(editor);
+    EXPECT_EQ(probe().now, glm::dvec2(121, 80));
+    undo_step(editor);
+    EXPECT_EQ(probe().now, glm::dvec2(100, 80));
+}
+
+TEST_F(CommandsTest, AHeldArrowChangesNoOtherStep) {
+    open_with({probe_at({100, 80}, {100, 80}), probe_at({200, 80}, {200, 80})});
+    editor.selected = 1;
+    press_key(editor, {key_right}, true);  // a key that was held before: there is no step to go on with
+    EXPECT_EQ(steps(), 1u);
+    run("Duplicate");
+    editor.selected = 1;
+    press_key(editor, {key_right}, true);  // something else was done meanwhile
+    EXPECT_EQ(steps(), 3u);
+    editor.selected = 2;
+    press_key(editor, {key_right}, true);  // another probe
+    EXPECT_EQ(steps(), 4u);
+    undo_step(editor);
+    press_key(editor, {key_left}, true);  // undone: the present step is not the nudge's
+    EXPECT_EQ(editor.history.at, 4u);
+    press_key(editor, {key_right}, true);  // there and back is no step
+    EXPECT_EQ(editor.history.at, 3u);
+    press_key(editor, {key_left}, true);
+    EXPECT_EQ(editor.history.at, 4u);
+}
+
+TEST_F(CommandsTest, WhatWasSavedUnderAHeldArrowIsNotSavedAnyMore) {
+    open_with({probe_at({100, 80}, {100, 80})});
+    editor.selected = 1;
+    press_key(editor, {key_right});
+    editor.history.saved = editor.history.at;
+    press_key(editor, {key_right}, true);
+    EXPECT_FALSE(is_saved(editor.history));
+}
+
 TEST_F(CommandsTest, AHundredPerCentIsExactlyThat) {
     expect_always("from every zoom", [this] {
         editor.view = {{*real(-500, 500), *real(-500, 500)}, std::pow(10, *real(-2, 1.8))};

@@ -292,6 +292,20 @@ TEST_F(EditorTest, PullingTheReachOfTheChosenProbe) {
     EXPECT_EQ(probe().radius, 1);  // never none
 }
 
+TEST_F(EditorTest, ADoubleClickOnAReachAddsAProbe) {
+    open_with({probe_at({100, 80}, {100, 80}, 0, 60)});
+    editor.selected = 1;
+    ASSERT_EQ(hit_test(editor, on_canvas({160, 80})), (Hit{Part::reach, 1}));
+    double_click_at({160, 80});
+    ASSERT_EQ(editor.document.probes.size(), 2u);
+    EXPECT_EQ(probe(1).rest, glm::dvec2(160, 80));
+    EXPECT_EQ(probe(0).radius, 60);
+    EXPECT_EQ(steps(), 1u);
+    editor.selected = 1;
+    double_click_at({100, 80 - stem_length / 2});  // on the knob, at 200 per cent
+    EXPECT_EQ(editor.document.probes.size(), 2u);
+}
+
 TEST_F(EditorTest, LockedProbesStay) {
     open_with({probe_at({100, 80}, {110, 80}, 1)});
     probe().locked = true;
