@@ -161,24 +161,8 @@ int failed(int code, const std::string& message) {
 int print_answer(const CLI::App& app, const CLI::ParseError& asked) {
     std::ostringstream text;
     const int code = app.exit(asked, text, text);
-    print_text(text.str());
+    print_plain(text.str());
     return code;
-}
-
-/// Does `work`, which gives the exit code, and says why where it fails.
-template <class Work>
-int telling_failures(const Work& work) {
-    try {
-        return work();
-    } catch (const CLI::ParseError& error) {
-        return failed(2, fmt::format("{}; see probewarp --help", error.what()));
-    } catch (const UsageError& error) {
-        return failed(2, error.what());
-    } catch (const std::bad_alloc&) {
-        return failed(1, "there is not enough memory");
-    } catch (const std::exception& error) {
-        return failed(1, error.what());
-    }
 }
 
 }  // namespace
@@ -187,7 +171,9 @@ void print_failure(const std::string& message) {
     print_aside(fmt::format("probewarp: {}\n", printable(message)));
 }
 
-int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path, DeformBy deform_by)) {
+namespace {
+
+int run_command(int argc, char** argv, int (*open_window)(const std::string& path, DeformBy deform_by)) {
     CLI::App app("Probewarp deforms a picture with probes.\nWithout a command it opens a window on FILE.",
                  "probewarp");
     std::string file, deform = "auto";
@@ -204,25 +190,37 @@ int run_command_line(int argc, char** argv, int (*open_window)(const std::string
     add_render(app, render_options);
     add_weights(app, weights_options);
     add_info(app, info_options);
-    return finish_printing(telling_failures([&] {
-        try {
-            app.parse(argc, argv);
-        } catch (const CLI::ParseError& error) {
-            if (error.get_exit_code() == 0) return print_answer(app, error);
-            throw;
-        }
+    try {
+        app.parse(argc, argv);
         if (!app.get_subcommands().empty() && app.count("--deform") > 0)
             throw UsageError("--deform: before a command it is nobody's; expected it behind render");
         limit_threads_to_what_starts();
-        if (app.got_subcommand("render")) return render(render_options);
-        if (app.got_subcommand("weights"))
+        if (app.got_subcommand("render"))
+            return render(render_options);
+        else if (app.got_subcommand("weights"))
             weights(weights_options);
         else if (app.got_subcommand("info"))
             info(info_options);
         else
             return open_window(file, std::ranges::find(deform_by_names, deform, &DeformByName::name)->by);
         return 0;
-    }));
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return print_answer(app, error);
+        return failed(2, fmt::format("{}; see probewarp --help", error.what()));
+    } catch (const UsageError& error) {
+        return failed(2, error.what());
+    } catch (const std::bad_alloc&) {
+        print_aside("probewarp: there is not enough memory\n");
+        return 1;
+    } catch (const std::exception& error) {
+        return failed(1, error.what());
+    }
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path, DeformBy deform_by)) {
+    return finish_printing(run_command(argc, argv, open_window));
 }
 
 }  // namespace probewarp

@@ -136,7 +136,7 @@ void print_deform(const Json& deform) {
           deform["processor_milliseconds"].get<double>(), deform["shader_milliseconds"].get<double>());
 }
 
-void print_summary(const Json& json) {
+void print_text(const Json& json) {
     const auto text = [&json](const char* field) { return printable(json[field].get<std::string>()); };
     print("{}: {} ({}), {} x {} pixels, {} bits{}\n", text("file"), text("picture"), text("format"),
           json["width"].get<int>(), json["height"].get<int>(), json["bits"].get<int>(),
@@ -165,7 +165,7 @@ void info(const InfoOptions& o) {
     if (o.json)
         print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     else
-        print_summary(json);
+        print_text(json);
 }
 
 }  // namespace probewarp

@@ -14,7 +14,7 @@ int output_error = 0;  // the first; 0 while all is well
 
 }  // namespace
 
-void print_text(std::string_view text) {
+void print_plain(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() && output_error == 0)
         output_error = errno;
 }

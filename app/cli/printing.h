@@ -10,11 +10,11 @@
 namespace probewarp {
 
 /// To standard output. What cannot be written is lost, and finish_printing tells.
-void print_text(std::string_view text);
+void print_plain(std::string_view text);
 
 template <class... Values>
 void print(fmt::format_string<Values...> format, Values&&... values) {
-    print_text(fmt::format(format, std::forward<Values>(values)...));
+    print_plain(fmt::format(format, std::forward<Values>(values)...));
 }
 
 /// To standard error, at once. What cannot be written is lost.

@@ -150,6 +150,10 @@ void refresh(Editor& editor);
 /// Whether the deformation is the document's own, rather than one that waits for its weights.
 bool is_deformed(const Editor& editor);
 
+/// Takes the document back to the present step, after something failed in the middle of a change, and forgets
+/// what was worked out from it.
+void restore(Editor& editor);
+
 /// Makes `document` a step of the history, unless nothing changed. Ends a gesture.
 void commit(Editor& editor, std::string label);
 /// Takes back what the gesture did. Without one, unselects.

@@ -3,12 +3,14 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <future>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -285,19 +287,25 @@ GLFWwindow* open_window(float scale) {
     return window;
 }
 
+/// What GLFW calls for an event, with no exception on the way back.
+template <auto callback, class... Values>
+void on(GLFWwindow* window, Values... values) {
+    guarded(app_of(window), [&] { callback(window, values...); });
+}
+
 void set_callbacks(GLFWwindow* window) {
-    glfwSetCursorPosCallback(window, &on_move);
-    glfwSetMouseButtonCallback(window, &on_button);
-    glfwSetScrollCallback(window, &on_scroll);
-    glfwSetKeyCallback(window, &on_key);
-    glfwSetCharCallback(window, &on_character);
-    glfwSetCursorEnterCallback(window, &on_enter);
-    glfwSetWindowFocusCallback(window, &on_focus);
-    glfwSetWindowCloseCallback(window, &on_close);
-    glfwSetDropCallback(window, &on_drop);
-    glfwSetWindowRefreshCallback(window, &on_damage);
-    glfwSetFramebufferSizeCallback(window, &on_size);
-    glfwSetWindowContentScaleCallback(window, &on_content_scale);
+    glfwSetCursorPosCallback(window, &on<&on_move>);
+    glfwSetMouseButtonCallback(window, &on<&on_button>);
+    glfwSetScrollCallback(window, &on<&on_scroll>);
+    glfwSetKeyCallback(window, &on<&on_key>);
+    glfwSetCharCallback(window, &on<&on_character>);
+    glfwSetCursorEnterCallback(window, &on<&on_enter>);
+    glfwSetWindowFocusCallback(window, &on<&on_focus>);
+    glfwSetWindowCloseCallback(window, &on<&on_close>);
+    glfwSetDropCallback(window, &on<&on_drop>);
+    glfwSetWindowRefreshCallback(window, &on<&on_damage>);
+    glfwSetFramebufferSizeCallback(window, &on<&on_size>);
+    glfwSetWindowContentScaleCallback(window, &on<&on_content_scale>);
 }
 
 /// ImGui itself; its fonts are rasterised on a thread of their own from the beginning on.
@@ -308,7 +316,11 @@ struct Toolkit {
         ImGui::CreateContext();
         ImGui::GetIO().IniFilename = nullptr;
         ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-        fonts = std::async(std::launch::async, &load_fonts, scale);
+        try {
+            fonts = std::async(std::launch::async, &load_fonts, scale);
+        } catch (const std::system_error&) {  // there is no thread for it
+            fonts = std::async(std::launch::deferred, &load_fonts, scale);
+        }
     }
     ~Toolkit() {
         if (fonts.valid()) fonts.wait();
@@ -354,12 +366,8 @@ void show_frame(App& app) {
     ++app.frames;
 }
 
-void draw_frame(App& app) {
-    if (!app.fonts.text) rebuild_fonts(app);
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
-    app.overlays.clear();
+/// The canvas and the panels round it.
+void draw_workplace(App& app) {
     const ImVec2 display = ImGui::GetIO().DisplaySize, corner = canvas_corner(app);
     const float panel = has_picture(app.editor) ? app.px(look::panel) : 0;
     // Behind work that the window waits for nothing can be used; it keeps its looks, since most is over at
@@ -375,6 +383,32 @@ void draw_frame(App& app) {
     draw_status_bar(app);
     ImGui::EndDisabled();
     ImGui::PopStyleVar();
+}
+
+/// In the workplace's stead where it cannot be drawn: the menus, so that the document can be saved.
+void draw_makeshift(App& app) {
+    draw_menu_bar(app);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin("##makeshift", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::TextUnformatted("The picture cannot be shown now. It can be saved.");
+    if (ImGui::Button("Show it again")) app.failed_frames = 0;
+    ImGui::End();
+}
+
+void draw_frame(App& app) {
+    if (!app.fonts.text) rebuild_fonts(app);
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    app.overlays.clear();
+    // One that failed once is tried once more.
+    if (app.failed_frames < 2)
+        draw_workplace(app);
+    else
+        draw_makeshift(app);
     draw_file_dialog(app);
     draw_export_dialog(app);
     draw_levels_dialog(app);
@@ -390,12 +424,28 @@ void draw_frame(App& app) {
     show_frame(app);
 }
 
+/// Draws a frame, and ends one that fails so that another can begin.
+void draw_guarded_frame(App& app) {
+    const bool makeshift = app.failed_frames >= 2;
+    if (guarded(app, [&] { draw_frame(app); })) {
+        app.failed_frames = makeshift ? std::min(app.failed_frames, 2) : 0;
+        return;
+    }
+    ++app.failed_frames;
+    if (ImGui::GetCurrentContext()->WithinFrameScope) {
+        ImGui::ErrorCheckEndFrameRecover(nullptr);
+        ImGui::EndFrame();
+    }
+}
+
 /// Sleeps until there is something to do: idle, the program uses no processor time.
 void wait_for_events(App& app) {
     if (is_busy(app) && !app.jobs.uploading) {  // leaves the processor to those who work
         glfwWaitEventsTimeout(0.03);
         return app.wake();
     }
+    // One failure after the other does not keep the processor busy.
+    if (app.failed_frames > 2) return glfwWaitEventsTimeout(0.1);
     if (app.frames_wanted > 0 || wants_trial(app)) return glfwPollEvents();
     const double message = next_message_change(app);
     const double caret = ImGui::GetIO().WantTextInput ? 0.3 : -1;  // a text field's caret blinks
@@ -418,17 +468,18 @@ void run(App& app) {
     const bool leaves_at_once = std::getenv("PROBEWARP_QUIT_AFTER_FIRST_FRAME") != nullptr;
     const bool opens = is_busy(app);
     while (!app.quit) {
-        wait_for_events(app);
-        advance_jobs(app);
-        handle_requests(app);
-        set_title(app);
-        draw_frame(app);
+        guarded(app, [&] { wait_for_events(app); });
+        guarded(app, [&] { advance_jobs(app); });
+        guarded(app, [&] { handle_requests(app); });
+        guarded(app, [&] { set_title(app); });
+        settle_trouble(app);
+        draw_guarded_frame(app);
         if (leaves_at_once && (!opens || app.shown.picture)) return;
         release_late_keys(app);
         if (app.frames_wanted > 0)
             --app.frames_wanted;
         else if (wants_trial(app))
-            advance_trial(app);
+            guarded(app, [&] { advance_trial(app); });
     }
 }
 
