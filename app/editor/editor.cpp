@@ -170,6 +170,18 @@ bool add_probe(Editor& editor, Probe probe) {
     return true;
 }
 
+void say_locked_stay(Editor& editor, const std::function<bool(const Probe&)>& would_change) {
+    const Probe* last = nullptr;
+    std::size_t count = 0;
+    for (const Probe& probe : editor.document.probes)
+        if (probe.locked && would_change(probe)) {
+            last = &probe;
+            ++count;
+        }
+    if (count == 1) editor.notice = last->name + " is locked and stays as it is.";
+    if (count > 1) editor.notice = std::to_string(count) + " locked probes stay as they are.";
+}
+
 glm::dvec2 knob_position(const Editor& editor, const Probe& probe) {
     return to_canvas(editor.view, probe.now) +
            stem_length * editor.scale * glm::dvec2(std::sin(probe.angle), -std::cos(probe.angle));

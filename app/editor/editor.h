@@ -179,6 +179,10 @@ int put_probe(Editor& editor, glm::dvec2 at);
 /// Adds the probe and chooses it, not committed. False, with a notice, where the weights would be too many.
 bool add_probe(Editor& editor, Probe probe);
 
+/// Makes a notice of which probes stay as they are because they are locked, of those that a change of several
+/// would otherwise change; none where there are none.
+void say_locked_stay(Editor& editor, const std::function<bool(const Probe&)>& would_change);
+
 /// What is under the pointer, the chosen probe first, then the topmost.
 Hit hit_test(const Editor& editor, glm::dvec2 at);
 /// Where the knob of a probe is, canvas pixels.

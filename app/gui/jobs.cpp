@@ -50,12 +50,12 @@ void advance_upload(App& app) {
     app.wake();
     try {
         while (!steps.done() && Clock::now() < until) steps.step();
+        if (!steps.done()) return;
+        app.renderer->set_picture(steps.take());
     } catch (const std::exception& error) {
-        say(app, Tone::error, error.what());
-        return app.jobs.uploading.reset();
+        app.jobs.uploading.reset();
+        return say(app, Tone::error, error.what());
     }
-    if (!steps.done()) return;
-    app.renderer->set_picture(steps.take());
     app.uploaded = app.jobs.uploading->picture;
     app.jobs.uploading.reset();
     app.jobs.preparing.reset();
