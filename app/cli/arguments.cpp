@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -9,6 +12,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "io/same_file.h"
 
 namespace probewarp {
 
@@ -29,6 +33,19 @@ std::vector<double> numbers(std::string_view text) {
 }
 
 }  // namespace
+
+void check_files(std::span<const UsedFile> read, std::span<const UsedFile> written) {
+    if (find_open_file(read, STDERR_FILENO)) {
+        // Not even the message may come into it.
+        const int nowhere = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+        if (nowhere < 0 || ::dup2(nowhere, STDERR_FILENO) < 0) ::close(STDERR_FILENO);
+        throw UsageError("standard error goes to a file that is read; expected another file");
+    }
+    if (const UsedFile* file = find_open_file(read, STDOUT_FILENO))
+        throw UsageError(
+            fmt::format("standard output goes to {}, which is read; expected another file", file->name));
+    if (const std::string why = why_not_written(read, written); !why.empty()) throw UsageError(why);
+}
 
 Probe parse_probe(const std::string& text, const Document& document) {
     const auto wrong = [&text] {

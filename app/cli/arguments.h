@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "model/document.h"
@@ -11,11 +12,17 @@
 namespace probewarp {
 
 struct BindingOptions;
+struct UsedFile;
 
 /// What the person typed cannot be understood: exit code 2.
 struct UsageError : Error {
     using Error::Error;
 };
+
+/// To be called with all files of a command before anything is written: throws UsageError where one would be
+/// written over another that is read, or two to one place. What is redirected into one that is read counts
+/// too.
+void check_files(std::span<const UsedFile> read, std::span<const UsedFile> written);
 
 /// "RX,RY[:X,Y[,DEG[,RADIUS]]]": a fresh probe of `document`, image pixels and degrees. Throws UsageError.
 Probe parse_probe(const std::string& text, const Document& document);

@@ -8,9 +8,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <sstream>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/printing.h"
+#include "cli/process.h"
 #include "io/image_file.h"
 #include "io/printable.h"
 #include "model/deform.h"
@@ -163,11 +166,23 @@ int failed(int code, const std::string& message) {
     return code;
 }
 
+/// --help and --version.
+int print_answer(const CLI::App& app, const CLI::ParseError& asked) {
+    std::ostringstream text;
+    const int code = app.exit(asked, text, text);
+    print_plain(text.str());
+    return code;
+}
+
 }  // namespace
 
-void print_failure(const std::string& message) { fmt::print(stderr, "probewarp: {}\n", printable(message)); }
+void print_failure(const std::string& message) {
+    print_aside(fmt::format("probewarp: {}\n", printable(message)));
+}
 
-int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path, DeformBy deform_by)) {
+namespace {
+
+int run_command(int argc, char** argv, int (*open_window)(const std::string& path, DeformBy deform_by)) {
     CLI::App app("Probewarp deforms a picture with probes.\nWithout a command it opens a window on FILE.",
                  "probewarp");
     std::string file, deform = "auto";
@@ -189,6 +204,7 @@ int run_command_line(int argc, char** argv, int (*open_window)(const std::string
         heed_environment();
         if (!app.get_subcommands().empty() && app.count("--deform") > 0)
             throw UsageError("--deform: before a command it is nobody's; expected it behind render");
+        limit_threads_to_what_starts();
         if (app.got_subcommand("render"))
             return render(render_options);
         else if (app.got_subcommand("weights"))
@@ -199,15 +215,22 @@ int run_command_line(int argc, char** argv, int (*open_window)(const std::string
             return open_window(file, std::ranges::find(deform_by_names, deform, &DeformByName::name)->by);
         return 0;
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);
+        if (error.get_exit_code() == 0) return print_answer(app, error);
         return failed(2, fmt::format("{}; see probewarp --help", error.what()));
     } catch (const UsageError& error) {
         return failed(2, error.what());
     } catch (const std::bad_alloc&) {
-        return failed(1, "there is not enough memory");
+        print_aside("probewarp: there is not enough memory\n");
+        return 1;
     } catch (const std::exception& error) {
         return failed(1, error.what());
     }
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, int (*open_window)(const std::string& path, DeformBy deform_by)) {
+    return finish_printing(run_command(argc, argv, open_window));
 }
 
 }  // namespace probewarp

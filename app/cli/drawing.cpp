@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <string>
+#include <system_error>
 
 #include "cli/arguments.h"
+#include "cli/printing.h"
 #include "render/driver_drawing.h"
 #include "render/overlay.h"
 
@@ -20,12 +23,11 @@ void Progress::show(double part) {
     constexpr std::size_t cells = 30;
     std::string bar(std::size_t(part * double(cells)), '#');
     bar.resize(cells, '.');
-    fmt::print(stderr, "\rrendering [{}] {:3.0f} %", bar, part * 100);
-    std::fflush(stderr);
+    print_aside(fmt::format("\rrendering [{}] {:3.0f} %", bar, part * 100));
 }
 
 void Progress::clear() {
-    if (shown_) fmt::print(stderr, "\r\x1b[K");
+    if (shown_) print_aside("\r\x1b[K");
     shown_ = false;
 }
 
@@ -52,7 +54,8 @@ void Output::finish() {
         bool good = true;
         for (const auto& part : kept_)
             good = good && std::fwrite(part.data(), 1, part.size(), stdout) == part.size();
-        if (!good || std::fflush(stdout) != 0) throw Error("cannot write to standard output");
+        if (!good || std::fflush(stdout) != 0)
+            throw Error("cannot write to standard output: " + std::generic_category().message(errno));
     });
 }
 

@@ -2,13 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/printing.h"
 #include "io/printable.h"
 #include "io/project.h"
+#include "io/same_file.h"
 #include "model/deformation.h"
 #include "model/instruction_set.h"
 #include "render/context.h"
@@ -105,66 +107,66 @@ Json description(const InfoOptions& o) {
 }
 
 void print_mesh(const Json& mesh) {
-    fmt::print("mesh: {} x {} cells, {} vertices; ", mesh["columns"].get<int>(), mesh["rows"].get<int>(),
-               mesh["vertices"].get<std::size_t>());
+    print("mesh: {} x {} cells, {} vertices; ", mesh["columns"].get<int>(), mesh["rows"].get<int>(),
+          mesh["vertices"].get<std::size_t>());
     if (mesh["from_alpha"].get<bool>())
-        fmt::print("where alpha is above {}, and {:g} pixels around\n", mesh["threshold"].get<int>(),
-                   mesh["margin"].get<double>());
+        print("where alpha is above {}, and {:g} pixels around\n", mesh["threshold"].get<int>(),
+              mesh["margin"].get<double>());
     else
-        fmt::print("whatever the alpha\n");
+        print("whatever the alpha\n");
     const int lone = mesh["lone_islands"].get<int>();
-    fmt::print("islands: {}{}\n", mesh["islands"].get<int>(),
-               lone == 0 ? "" : fmt::format("; without a probe, so that they follow the nearest: {}", lone));
+    print("islands: {}{}\n", mesh["islands"].get<int>(),
+          lone == 0 ? "" : fmt::format("; without a probe, so that they follow the nearest: {}", lone));
 }
 
 void print_weights(const Json& weights) {
     const double falloff = weights["falloff"].get<double>();
     const int most = weights["most"].get<int>();
-    fmt::print("weights: {}, exponent {:g}, falloff {}, probes a vertex may follow: {}\n",
-               printable(weights["scheme"].get<std::string>()), weights["exponent"].get<double>(),
-               falloff > 0 ? fmt::format("{:g} reaches", falloff) : "none",
-               most > 0 ? fmt::format("{}", most) : "all");
+    print("weights: {}, exponent {:g}, falloff {}, probes a vertex may follow: {}\n",
+          printable(weights["scheme"].get<std::string>()), weights["exponent"].get<double>(),
+          falloff > 0 ? fmt::format("{:g} reaches", falloff) : "none",
+          most > 0 ? fmt::format("{}", most) : "all");
 }
 
 void print_deform(const Json& deform) {
     if (deform.is_null()) return;
-    fmt::print("deforms by: {}; {}\n", deform["by"].get<std::string>(),
-               printable(deform["why"].get<std::string>()));
+    print("deforms by: {}; {}\n", deform["by"].get<std::string>(),
+          printable(deform["why"].get<std::string>()));
     if (deform["shader_milliseconds"].is_null()) return;
-    fmt::print("a step of a drag, {} vertices by {} probes: processor {:.3f} ms, shader {:.3f} ms\n",
-               deform["vertices"].get<std::size_t>(), deform["probes"].get<int>(),
-               deform["processor_milliseconds"].get<double>(), deform["shader_milliseconds"].get<double>());
+    print("a step of a drag, {} vertices by {} probes: processor {:.3f} ms, shader {:.3f} ms\n",
+          deform["vertices"].get<std::size_t>(), deform["probes"].get<int>(),
+          deform["processor_milliseconds"].get<double>(), deform["shader_milliseconds"].get<double>());
 }
 
 void print_text(const Json& json) {
     const auto text = [&json](const char* field) { return printable(json[field].get<std::string>()); };
-    fmt::print("{}: {} ({}), {} x {} pixels, {} bits{}\n", text("file"), text("picture"), text("format"),
-               json["width"].get<int>(), json["height"].get<int>(), json["bits"].get<int>(),
-               json["alpha"].get<bool>() ? ", with transparency" : "");
+    print("{}: {} ({}), {} x {} pixels, {} bits{}\n", text("file"), text("picture"), text("format"),
+          json["width"].get<int>(), json["height"].get<int>(), json["bits"].get<int>(),
+          json["alpha"].get<bool>() ? ", with transparency" : "");
     print_mesh(json["mesh"]);
     print_weights(json["weights"]);
-    fmt::print(
-        "blend: {}; vertices for which it has no answer, so that they follow their heaviest probe: {}\n",
-        text("blend"), json["cancelled_vertices"].get<std::size_t>());
-    fmt::print("stiffness: {}\n", json["stiffness"].get<bool>() ? "painted" : "none");
-    fmt::print("probes: {}\n", json["probes"].size());
+    print("blend: {}; vertices for which it has no answer, so that they follow their heaviest probe: {}\n",
+          text("blend"), json["cancelled_vertices"].get<std::size_t>());
+    print("stiffness: {}\n", json["stiffness"].get<bool>() ? "painted" : "none");
+    print("probes: {}\n", json["probes"].size());
     for (const Json& p : json["probes"])
-        fmt::print("  {}: {:g}, {:g} now at {:g}, {:g}, turned {:g} degrees, reach {:g}{}\n",
-                   printable(p["name"].get<std::string>()), p["rest"][0].get<double>(),
-                   p["rest"][1].get<double>(), p["now"][0].get<double>(), p["now"][1].get<double>(),
-                   p["angle_degrees"].get<double>(), p["radius"].get<double>(),
-                   p["painted"].get<bool>() ? ", painted" : "");
-    fmt::print("instruction set: {}\n", text("instruction_set"));
-    fmt::print("renderer: {}\n", text("renderer"));
+        print("  {}: {:g}, {:g} now at {:g}, {:g}, turned {:g} degrees, reach {:g}{}\n",
+              printable(p["name"].get<std::string>()), p["rest"][0].get<double>(), p["rest"][1].get<double>(),
+              p["now"][0].get<double>(), p["now"][1].get<double>(), p["angle_degrees"].get<double>(),
+              p["radius"].get<double>(), p["painted"].get<bool>() ? ", painted" : "");
+    print("instruction set: {}\n", text("instruction_set"));
+    print("renderer: {}\n", text("renderer"));
     print_deform(json["deform"]);
 }
 
 }  // namespace
 
 void info(const InfoOptions& o) {
+    const UsedFile read[]{{"the input itself", o.input}};
+    check_files(read, {});
     const Json json = description(o);
     if (o.json)
-        fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+        print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     else
         print_text(json);
 }

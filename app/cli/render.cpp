@@ -3,7 +3,6 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 #include "cli/arguments.h"
@@ -16,6 +15,7 @@
 #include "io/obj.h"
 #include "io/probes_csv.h"
 #include "io/project.h"
+#include "io/same_file.h"
 
 namespace probewarp {
 
@@ -115,11 +115,16 @@ PicturePtr other_picture(const RenderOptions& o, Pixels pixels) {
     return std::make_shared<Picture>(read_picture(o.images.front(), pixels));
 }
 
-void check_not_the_input(const RenderOptions& o, const std::filesystem::path& output) {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(o.input, output, ignored))
-        throw UsageError(
-            fmt::format("-o {}: this is the input itself; expected another file", output.string()));
+/// Refuses to write over what is read, before anything is.
+void check_render_files(const RenderOptions& o) {
+    std::vector<UsedFile> read{{"the input itself", o.input}}, written;
+    if (!o.probes_csv.empty()) read.push_back({"the file of --probes", o.probes_csv});
+    for (const std::string& image : o.images) read.push_back({"one of the pictures of --image", image});
+    if (is_many(o))
+        for (const auto& path : output_paths(o)) written.push_back({"-o " + path.string(), path});
+    else if (const auto path = output_path(o))
+        written.push_back({"-o " + path->string(), *path});
+    check_files(read, written);
 }
 
 RenderPlan plan_of(const RenderOptions& o, const ImageFormat& format) {
@@ -168,7 +173,6 @@ void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
     check_deform(o, document);
     check_heat(o, format.kind, document);
     if (format.kind == Kind::project) return write_output(o, encode_project(document), timings);
-    if (o.output != "-") check_not_the_input(o, o.output);
 
     Deformation deformation;
     timings.measure(Stage::weights, [&] { update(deformation, document); });
@@ -207,6 +211,7 @@ int render(const RenderOptions& o) {
     Timings timings;
     const OutputFormat format = output_format(o);
     export_settings(o);  // throws where they cannot be understood
+    check_render_files(o);
     int code = 0;
     if (is_many(o))
         code = render_all(o, format, timings);

@@ -30,35 +30,6 @@ fs::path output_of(const std::string& output, const fs::path& image) {
     return path;
 }
 
-bool same_file(const fs::path& a, const fs::path& b) {
-    std::error_code ignored;
-    return fs::equivalent(a, b, ignored);
-}
-
-/// Where each picture goes. Throws UsageError where two would go to one place, or one over what is read.
-std::vector<fs::path> output_paths(const RenderOptions& o) {
-    std::vector<fs::path> paths;
-    std::map<fs::path, std::string> taken;  // by whom
-    for (const std::string& image : o.images) {
-        paths.push_back(output_of(o.output, image));
-        const auto [other, fresh] = taken.emplace(paths.back().lexically_normal(), image);
-        if (!fresh)
-            throw UsageError(
-                fmt::format("--image {} and {}: both would be written to {}; expected pictures "
-                            "of different names",
-                            other->second, image, paths.back().string()));
-        if (same_file(paths.back(), o.input))
-            throw UsageError(fmt::format("-o {}: this is the input itself; expected another folder",
-                                         paths.back().string()));
-    }
-    for (const fs::path& path : paths)
-        for (const std::string& image : o.images)
-            if (same_file(path, image))
-                throw UsageError(fmt::format("-o {}: this is one of the pictures; expected another folder",
-                                             path.string()));
-    return paths;
-}
-
 /// One picture, from its file to the other file. What goes wrong on the way is kept in `error`.
 struct Work {
     std::string image;
@@ -176,6 +147,21 @@ class Batch {
 
 bool is_many(const RenderOptions& o) {
     return o.output.find(placeholder) != std::string::npos && !o.images.empty();
+}
+
+std::vector<fs::path> output_paths(const RenderOptions& o) {
+    std::vector<fs::path> paths;
+    std::map<fs::path, std::string> taken;  // by whom
+    for (const std::string& image : o.images) {
+        paths.push_back(output_of(o.output, image));
+        const auto [other, fresh] = taken.emplace(paths.back().lexically_normal(), image);
+        if (!fresh)
+            throw UsageError(
+                fmt::format("--image {} and {}: both would be written to {}; expected pictures "
+                            "of different names",
+                            other->second, image, paths.back().string()));
+    }
+    return paths;
 }
 
 int render_many(const RenderPlan& plan, const Document& base, const PoseOn& pose_on, Timings& timings) {

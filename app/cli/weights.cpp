@@ -4,16 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/printing.h"
 #include "io/file.h"
 #include "io/paint_file.h"
 #include "io/printable.h"
 #include "io/project.h"
+#include "io/same_file.h"
 #include "model/share_lookup.h"
 
 namespace probewarp {
@@ -22,24 +25,32 @@ namespace {
 
 constexpr std::size_t raster_bytes = std::size_t{256} << 20;  // that the weights of one group may take
 
-/// Paints a probe with a map from elsewhere: "NAME=FILE.png".
-void import_paint(Document& document, const std::string& text) {
+/// "NAME=FILE.png", understood.
+struct Import {
+    std::size_t probe = 0;  ///< its place in the document
+    std::string path;
+};
+
+Import parse_import(const Document& document, const std::string& text) {
     std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
         throw UsageError(fmt::format("--import {}: expected NAME=FILE.png", text));
     // A name may have an equals sign in it itself.
     for (std::size_t at = equals; at != std::string::npos; at = text.find('=', at + 1))
         if (find_probe_named(document, text.substr(0, at))) equals = at;
-    const std::size_t probe = probe_named(document, text.substr(0, equals), "--import");
-    const std::string path = text.substr(equals + 1);
-    const auto bytes = read_file(path);
+    return {probe_named(document, text.substr(0, equals), "--import"), text.substr(equals + 1)};
+}
+
+/// Paints a probe with a map from elsewhere.
+void import_paint(Document& document, const Import& import) {
+    const auto bytes = read_file(import.path);
     const PictureFrame frame = frame_of(document.picture->image);
     try {
         auto map = decode_paint(bytes, 2.0 * frame.centre / frame.longer);
-        document.probes[probe].paint =
+        document.probes[import.probe].paint =
             is_blank(map) ? nullptr : std::make_shared<const PaintMap>(std::move(map));
     } catch (const Error& error) {
-        throw Error(fmt::format("{}: {}", path, error.what()));
+        throw Error(fmt::format("{}: {}", import.path, error.what()));
     }
 }
 
@@ -99,14 +110,23 @@ void write_weights(const Document& document, const WeightsOptions& o, std::array
         const auto images = weight_images(deformation, probes, width, height);
         for (std::size_t k = 0; k < probes.size(); ++k) {
             const std::filesystem::path path = folder / file_name(document, probes[k]);
-            std::error_code ignored;
-            if (std::filesystem::equivalent(path, o.input, ignored))
-                throw UsageError(
-                    fmt::format("{}: this is the input itself; expected another folder", path.string()));
             write_file(path, encode_grey_png(width, height, images[k]));
-            if (!o.quiet) fmt::print("{}\n", printable(path.string()));
+            if (!o.quiet) print("{}\n", printable(path.string()));
         }
     }
+}
+
+/// Refuses to write over what is read, before anything is written.
+void check_weights_files(const Document& document, const WeightsOptions& o, std::span<const Import> imports) {
+    std::vector<UsedFile> read{{"the input itself", o.input}}, written;
+    for (const Import& import : imports)
+        read.push_back({fmt::format("the map of --import, {}", import.path), import.path});
+    if (!o.save.empty()) written.push_back({"--save " + o.save, o.save});
+    for (std::size_t i = 0; i < document.probes.size() && !o.output.empty(); ++i) {
+        const std::filesystem::path path = std::filesystem::path(o.output) / file_name(document, i);
+        written.push_back({path.string(), path});
+    }
+    check_files(read, written);
 }
 
 }  // namespace
@@ -125,7 +145,10 @@ void weights(const WeightsOptions& o) {
             fmt::format("{}: there are no probes, so there are no weights; expected a project with "
                         "probes, or --probe",
                         o.input));
-    for (const std::string& text : o.imports) import_paint(document, text);
+    std::vector<Import> imports;
+    for (const std::string& text : o.imports) imports.push_back(parse_import(document, text));
+    check_weights_files(document, o, imports);
+    for (const Import& import : imports) import_paint(document, import);
     if (!o.save.empty()) write_file(o.save, encode_project(document));
     if (!o.output.empty()) write_weights(document, o, size);
 }

@@ -14,18 +14,18 @@ namespace probewarp {
 
 namespace {
 
-std::string_view needs_picture(const Editor& e) { return has_picture(e) ? "" : "Open a picture first"; }
-std::string_view needs_probe(const Editor& e) {
+std::string needs_picture(const Editor& e) { return has_picture(e) ? "" : "Open a picture first"; }
+std::string needs_probe(const Editor& e) {
     return find_probe(e.document, e.selected) ? "" : "Choose a probe first";
 }
-std::string_view needs_pose(const Editor& e) {
+std::string needs_pose(const Editor& e) {
     const auto& probes = e.document.probes;
     if (std::all_of(probes.begin(), probes.end(), at_rest)) return "No probe has moved";
     const auto stays = [](const Probe& probe) { return probe.locked || at_rest(probe); };
     return std::all_of(probes.begin(), probes.end(), stays) ? "Every probe that has moved is locked" : "";
 }
-std::string_view needs_undo(const Editor& e) { return e.history.at > 0 ? "" : "There is nothing to undo"; }
-std::string_view needs_redo(const Editor& e) {
+std::string needs_undo(const Editor& e) { return e.history.at > 0 ? "" : "There is nothing to undo"; }
+std::string needs_redo(const Editor& e) {
     return e.history.at + 1 < e.history.steps.size() ? "" : "There is nothing to redo";
 }
 
@@ -60,6 +60,7 @@ void reset_probe(Editor& editor) {
 }
 
 void reset_pose(Editor& editor) {
+    say_locked_stay(editor, [](const Probe& probe) { return !at_rest(probe); });
     for (Probe& probe : editor.document.probes)
         if (!probe.locked) put_to_rest(probe);
     commit(editor, "Reset pose");
@@ -107,7 +108,7 @@ constexpr Command all[] = {
     {"Edit", "Undo", {'Z', true}, &needs_undo, &undo_step},
     {"Edit", "Redo", {'Z', true, true}, &needs_redo, &redo_step},
     {"Edit", "Unselect", {}, &needs_probe, [](Editor& e) { e.selected = 0; }, true},
-    {"Probe", "Delete", {key_delete}, &needs_probe, &delete_probe},
+    {"Probe", "Delete", {key_delete}, &needs_unlocked, &delete_probe},
     {"Probe", "Duplicate", {'D', true}, &needs_probe, &duplicate_probe},
     {"Probe",
      "Lock",
@@ -218,7 +219,11 @@ constexpr Alias second_keys[] = {
 
 void nudge(Editor& editor, glm::dvec2 way, bool held) {
     Probe* probe = selected_probe(editor);
-    if (!probe || probe->locked) return;
+    if (!probe) return;
+    if (probe->locked) {
+        editor.notice = needs_unlocked(editor) + ".";
+        return;
+    }
     probe->now += way;
     // The step that a held key has begun is made anew: held keys are one step.
     const Nudge last = std::exchange(editor.nudge, {});
@@ -249,11 +254,11 @@ const Command& find_command(std::string_view label) {
 
 void run(Editor& editor, const Command& command) {
     if (editor.gesture) return;  // a drag ends by itself or by Escape
-    const std::string_view why_not = command.why_not ? command.why_not(editor) : "";
+    const std::string why_not = command.why_not ? command.why_not(editor) : "";
     if (why_not.empty())
         command.run(editor);
     else
-        editor.notice = std::string(why_not) + ".";
+        editor.notice = why_not + ".";
 }
 
 bool press_key(Editor& editor, const Shortcut& key, bool held) {

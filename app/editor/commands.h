@@ -34,7 +34,7 @@ struct Command {
     std::string_view label;
     Shortcut shortcut;
     /// Why it cannot be used now; empty when it can. Null: it always can.
-    std::string_view (*why_not)(const Editor& editor);
+    std::string (*why_not)(const Editor& editor);
     void (*run)(Editor& editor);
     bool separated = false;  ///< a line above it in the menu
     /// Whether it is switched on; null for what is no switch.

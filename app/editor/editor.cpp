@@ -16,17 +16,26 @@ bool has_picture(const Editor& editor) { return editor.document.picture != nullp
 
 Probe* selected_probe(Editor& editor) { return find_probe(editor.document, editor.selected); }
 
+namespace {
+
+/// The versions go on: who keeps what was drawn from the last deformation must see that this is another.
+void forget_deformation(Editor& editor) {
+    Deformation fresh;
+    fresh.mesh_version = editor.deformation.mesh_version;
+    fresh.version = editor.deformation.version;
+    editor.deformation = std::move(fresh);
+    editor.next_deformation.reset();
+}
+
+}  // namespace
+
 void start(Editor& editor, Document document, std::filesystem::path path, bool saved) {
     editor.gesture.reset();
     editor.selected = 0;
     editor.hover = {};
     editor.history = new_history(document, saved);
     editor.document = std::move(document);
-    // The versions go on: who keeps what was drawn from the last document must see that this is another.
-    Deformation fresh;
-    fresh.mesh_version = editor.deformation.mesh_version;
-    fresh.version = editor.deformation.version;
-    editor.deformation = std::move(fresh);
+    forget_deformation(editor);
     ++editor.opened;
     editor.path = std::move(path);
     editor.axis.reset();
@@ -112,6 +121,12 @@ void show_present(Editor& editor) {
 
 }  // namespace
 
+void restore(Editor& editor) {
+    show_present(editor);
+    editor.hover = {};
+    forget_deformation(editor);
+}
+
 void undo_step(Editor& editor) {
     if (undo(editor.history)) show_present(editor);
 }
@@ -153,6 +168,18 @@ bool add_probe(Editor& editor, Probe probe) {
     }
     editor.selected = editor.document.probes.back().id;
     return true;
+}
+
+void say_locked_stay(Editor& editor, const std::function<bool(const Probe&)>& would_change) {
+    const Probe* last = nullptr;
+    std::size_t count = 0;
+    for (const Probe& probe : editor.document.probes)
+        if (probe.locked && would_change(probe)) {
+            last = &probe;
+            ++count;
+        }
+    if (count == 1) editor.notice = last->name + " is locked and stays as it is.";
+    if (count > 1) editor.notice = std::to_string(count) + " locked probes stay as they are.";
 }
 
 glm::dvec2 knob_position(const Editor& editor, const Probe& probe) {

@@ -157,6 +157,10 @@ void refresh(Editor& editor);
 /// Whether the deformation is the document's own, rather than one that waits for its weights.
 bool is_deformed(const Editor& editor);
 
+/// Takes the document back to the present step, after something failed in the middle of a change, and forgets
+/// what was worked out from it.
+void restore(Editor& editor);
+
 /// Makes `document` a step of the history, unless nothing changed. Ends a gesture.
 void commit(Editor& editor, std::string label);
 /// Takes back what the gesture did. Without one, unselects.
@@ -181,6 +185,10 @@ void end_field(Editor& editor, std::string label);
 int put_probe(Editor& editor, glm::dvec2 at);
 /// Adds the probe and chooses it, not committed. False, with a notice, where the weights would be too many.
 bool add_probe(Editor& editor, Probe probe);
+
+/// Makes a notice of which probes stay as they are because they are locked, of those that a change of several
+/// would otherwise change; none where there are none.
+void say_locked_stay(Editor& editor, const std::function<bool(const Probe&)>& would_change);
 
 /// What is under the pointer, the chosen probe first, then the topmost.
 Hit hit_test(const Editor& editor, glm::dvec2 at);

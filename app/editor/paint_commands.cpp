@@ -47,10 +47,13 @@ void set_paint(Editor& editor, PaintPtr paint, const char* what) {
     commit(editor, what + (" " + probe.name));
 }
 
+bool has_paint(const Probe& probe) { return probe.paint != nullptr; }
+
 /// The probe's paint and its counterpart's become each other's mirror images.
 void mirror_paint(Editor& editor, Side side) {
     const MirrorAxis axis = mirror_axis(editor);
     const std::size_t probe = chosen_place(editor), other = counterpart(editor.document, probe, axis);
+    say_locked_stay(editor, [&](const Probe& p) { return &p == &editor.document.probes[other]; });
     add_task(editor, "Mirror " + editor.document.probes[probe].name,
              [probe, other, axis, side](const Deformation& deformation) {
                  Document document = deformation.source;
@@ -70,25 +73,29 @@ void mirror_paint(Editor& editor, Side side) {
 
 }  // namespace
 
-std::string_view needs_unlocked(const Editor& editor) {
+std::string needs_unlocked(const Editor& editor) {
     const Probe* probe = find_probe(editor.document, editor.selected);
-    return !probe ? "Choose a probe first" : probe->locked ? "The probe is locked" : "";
+    if (!probe) return "Choose a probe first";
+    return probe->locked ? probe->name + " is locked; unlock it first" : "";
 }
-std::string_view needs_paint(const Editor& editor) {
+std::string needs_paint(const Editor& editor) {
     const Probe* probe = find_probe(editor.document, editor.selected);
     return !probe ? "Choose a probe first" : !probe->paint ? "The probe has no paint" : "";
 }
-std::string_view needs_own_paint(const Editor& editor) {
-    const std::string_view why_not = needs_unlocked(editor);
+std::string needs_own_paint(const Editor& editor) {
+    std::string why_not = needs_unlocked(editor);
     return why_not.empty() ? needs_paint(editor) : why_not;
 }
-std::string_view needs_any_paint(const Editor& editor) {
-    return is_painted(editor.document) ? "" : "Nothing is painted";
+std::string needs_any_paint(const Editor& editor) {
+    if (!is_painted(editor.document)) return "Nothing is painted";
+    const auto stays = [](const Probe& probe) { return probe.locked || !probe.paint; };
+    const auto& probes = editor.document.probes;
+    return std::all_of(probes.begin(), probes.end(), stays) ? "Every probe that has paint is locked" : "";
 }
-std::string_view needs_copied_paint(const Editor& editor) {
+std::string needs_copied_paint(const Editor& editor) {
     return editor.copied_paint ? needs_unlocked(editor) : "Copy a probe's paint first";
 }
-std::string_view needs_stiffness(const Editor& editor) {
+std::string needs_stiffness(const Editor& editor) {
     return editor.document.stiffness ? "" : "No stiffness is painted";
 }
 
@@ -120,13 +127,18 @@ void paste_paint(Editor& editor) { set_paint(editor, editor.copied_paint, "Paste
 void mirror_left_to_right(Editor& editor) { mirror_paint(editor, Side::left); }
 void mirror_right_to_left(Editor& editor) { mirror_paint(editor, Side::right); }
 void limit_paint(Editor& editor) {
+    say_locked_stay(editor, has_paint);
     add_task(editor, "Limit paint",
              [](const Deformation& deformation) { return limited_paint(deformation, 4); });
 }
-void normalise_paint(Editor& editor) { add_task(editor, "Normalise paint", &normalised_paint); }
+void normalise_paint(Editor& editor) {
+    say_locked_stay(editor, has_paint);
+    add_task(editor, "Normalise paint", &normalised_paint);
+}
 void clear_paint(Editor& editor) { set_paint(editor, nullptr, "Clear paint of"); }
 
 void clear_all_paint(Editor& editor) {
+    say_locked_stay(editor, has_paint);
     for (Probe& probe : editor.document.probes)
         if (!probe.locked) probe.paint = nullptr;
     commit(editor, "Clear all paint");

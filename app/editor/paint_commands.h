@@ -6,14 +6,14 @@
 namespace probewarp {
 
 /// Why a command cannot change the chosen probe; empty where it can.
-std::string_view needs_unlocked(const Editor& editor);
+std::string needs_unlocked(const Editor& editor);
 /// ... or has no paint to copy.
-std::string_view needs_paint(const Editor& editor);
+std::string needs_paint(const Editor& editor);
 /// ... or has no paint that could be changed.
-std::string_view needs_own_paint(const Editor& editor);
-std::string_view needs_any_paint(const Editor& editor);
-std::string_view needs_copied_paint(const Editor& editor);
-std::string_view needs_stiffness(const Editor& editor);
+std::string needs_own_paint(const Editor& editor);
+std::string needs_any_paint(const Editor& editor);
+std::string needs_copied_paint(const Editor& editor);
+std::string needs_stiffness(const Editor& editor);
 
 // Each is a step of the history, at once or (where every texel is worked out anew) by a Task.
 void fill_paint(Editor& editor);  ///< with the brush's value

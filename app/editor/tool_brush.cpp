@@ -146,6 +146,8 @@ void begin_stroke(Editor& editor, const PointerEvent& event) {
     if (editor.mirror && !stiff) {
         const std::size_t place = place_of(editor.document, probe);
         const std::size_t other = counterpart(editor.document, place, mirror_axis(editor));
+        if (other != place)
+            say_locked_stay(editor, [&](const Probe& p) { return &p == &editor.document.probes[other]; });
         if (other != place && !editor.document.probes[other].locked)
             stroke->mirrored = layer_of(editor, editor.document.probes[other].id);
     }

@@ -15,6 +15,7 @@
 #include "gui/deform_job.h"
 #include "gui/file_dialog.h"
 #include "gui/fonts.h"
+#include "gui/guard.h"
 #include "gui/input.h"
 #include "gui/jobs.h"
 #include "gui/last_frame.h"
@@ -84,6 +85,7 @@ struct App {
     glm::dvec2 cursor{0};         ///< window pixels: at the last event
     Shown shown;                  ///< as it was last drawn, or tried to be
     GLuint shown_texture = 0;     ///< 0 before the first time
+    bool shown_failed = false;    ///< the renderer may hold anything: it is handed all anew
     PicturePtr uploaded;          ///< the picture that the renderer holds
     WeightsKey overlaid, shaded;  ///< what the renderer's overlay and its shader have; empty: none
     double deform_milliseconds = 0;
@@ -97,6 +99,8 @@ struct App {
 
     Jobs jobs;
     std::vector<Message> messages;
+    Trouble trouble;        ///< what went wrong and is not said yet
+    int failed_frames = 0;  ///< one after the other; from the second on they come without the picture
     std::vector<std::pair<ImVec2, ImVec2>> overlays;  ///< what lies over the canvas in this frame
     FileDialog file_dialog;
     ExportDialog export_dialog;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "editor/comparison.h"
 #include "editor/painting.h"
@@ -106,7 +107,8 @@ void update_texture(App& app, glm::ivec2 size) {
     std::swap(app.shown, now);
     app.redraws = true;
     try {
-        draw_shown(app, now);
+        draw_shown(app, std::exchange(app.shown_failed, true) ? Shown() : now);
+        app.shown_failed = false;
     } catch (const std::exception& error) {
         say(app, Tone::error, error.what());
     }

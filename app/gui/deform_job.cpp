@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <new>
+#include <system_error>
+#include <utility>
 
 #include "editor/painting.h"
 #include "gui/app.h"
@@ -26,25 +28,37 @@ std::shared_ptr<const Binding> present_binding(const Editor& editor) {
     return serves ? binding : nullptr;
 }
 
+Deformation work_out(DeformJob& job, const std::shared_ptr<const Binding>& present,
+                     const std::shared_ptr<const Binding>& before) {
+    struct WakeUp {
+        ~WakeUp() { glfwPostEmptyEvent(); }
+    } wake_up;
+    const auto binding = present ? present : make_binding(job.document, before, &job.given_up);
+    job.bound = true;
+    const auto start = Clock::now();
+    Deformation made;
+    pose(made, job.document, binding);
+    job.milliseconds = milliseconds_since(start);
+    return made;
+}
+
 void start(App& app) {
-    app.deform_job = std::make_unique<DeformJob>();
-    DeformJob& job = *app.deform_job;
+    auto job = std::make_unique<DeformJob>();
     const auto present = present_binding(app.editor);
-    job.document = app.editor.document;
-    job.binds = !present;
-    job.since = ImGui::GetTime();
-    job.result = std::async(std::launch::async, [&job, present, before = app.last_binding] {
-        struct WakeUp {
-            ~WakeUp() { glfwPostEmptyEvent(); }
-        } wake_up;
-        const auto binding = present ? present : make_binding(job.document, before, &job.given_up);
-        job.bound = true;
-        const auto start = Clock::now();
-        Deformation made;
-        pose(made, job.document, binding);
-        job.milliseconds = milliseconds_since(start);
-        return made;
-    });
+    job->document = app.editor.document;
+    job->binds = !present;
+    job->since = ImGui::GetTime();
+    const auto work = [&job = *job, present, before = app.last_binding] {
+        return work_out(job, present, before);
+    };
+    try {
+        job->result = std::async(std::launch::async, work);
+    } catch (const std::system_error&) {  // there is no thread for it: the window waits
+        std::packaged_task<Deformation()> here(work);
+        job->result = here.get_future();
+        here();
+    }
+    app.deform_job = std::move(job);
 }
 
 /// The job failed: it is not tried again before something changes that may help.

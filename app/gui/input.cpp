@@ -10,12 +10,11 @@
 
 #include "gui/actions.h"
 #include "gui/app.h"
+#include "gui/guard.h"
 
 namespace probewarp {
 
 namespace {
-
-App& app_of(GLFWwindow* window) { return *static_cast<App*>(glfwGetWindowUserPointer(window)); }
 
 int editor_key(int key) {
     switch (key) {
@@ -347,13 +346,13 @@ bool waits(const App& app, const InputEvent& event, Outcome before) {
 }  // namespace
 
 void set_input_callbacks(GLFWwindow* window) {
-    glfwSetCursorPosCallback(window, &on_move);
-    glfwSetMouseButtonCallback(window, &on_button);
-    glfwSetScrollCallback(window, &on_scroll);
-    glfwSetKeyCallback(window, &on_key);
-    glfwSetCharCallback(window, &on_character);
-    glfwSetCursorEnterCallback(window, &on_enter);
-    glfwSetWindowFocusCallback(window, &on_focus);
+    glfwSetCursorPosCallback(window, &on<&on_move>);
+    glfwSetMouseButtonCallback(window, &on<&on_button>);
+    glfwSetScrollCallback(window, &on<&on_scroll>);
+    glfwSetKeyCallback(window, &on<&on_key>);
+    glfwSetCharCallback(window, &on<&on_character>);
+    glfwSetCursorEnterCallback(window, &on<&on_enter>);
+    glfwSetWindowFocusCallback(window, &on<&on_focus>);
 }
 
 void set_up_toolkit_input(App& app) {
@@ -385,9 +384,12 @@ void hand_on_input(App& app) {
     Outcome outcome = Outcome::done;
     while (!input.events.empty() && !waits(app, input.events.front(), outcome)) {
         const InputEvent event = input.events.front();
+        input.events.pop_front();  // before it is taken: one that fails does not come again
         const Outcome next = take(app, event);
-        if (next == Outcome::later) break;
-        input.events.pop_front();
+        if (next == Outcome::later) {
+            input.events.push_front(event);
+            break;
+        }
         input.left = false;
         if (next != Outcome::done) outcome = next;
         if (!app.editor.requests.empty()) {  // a dialog may open, which takes the keys

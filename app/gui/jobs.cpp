@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <new>
+#include <system_error>
 
 #include "gui/app.h"
 #include "gui/widgets.h"
@@ -10,23 +10,34 @@
 
 namespace probewarp {
 
+namespace {
+
+void carry_out(Job& job, const Work& work) {
+    try {
+        job.finish = work(job);
+    } catch (...) {
+        job.failure = std::current_exception();
+    }
+    job.done = true;
+    glfwPostEmptyEvent();
+}
+
+}  // namespace
+
 void start_job(App& app, std::string title, JobKind kind, Work work) {
-    auto job = std::make_unique<Job>();
-    job->title = std::move(title);
-    job->kind = kind;
-    job->thread = std::jthread([&job = *job, work = std::move(work)] {
-        try {
-            job.finish = work(job);
-        } catch (const std::bad_alloc&) {
-            job.error = "There is not enough memory.";
-        } catch (const std::exception& error) {
-            job.error = error.what();
-        }
-        job.done = true;
-        glfwPostEmptyEvent();
-    });
-    app.jobs.running.push_back(std::move(job));
+    app.jobs.running.push_back(std::make_unique<Job>());
+    Job& job = *app.jobs.running.back();
+    job.title = std::move(title);
+    job.kind = kind;
     app.wake();
+    try {
+        job.thread = std::jthread([&job, work] { carry_out(job, work); });
+    } catch (const std::system_error&) {  // the system has none left
+        carry_out(job, work);
+    } catch (...) {
+        app.jobs.running.pop_back();
+        throw;
+    }
 }
 
 namespace {
@@ -39,12 +50,12 @@ void advance_upload(App& app) {
     app.wake();
     try {
         while (!steps.done() && Clock::now() < until) steps.step();
+        if (!steps.done()) return;
+        app.renderer->set_picture(steps.take());
     } catch (const std::exception& error) {
-        say(app, Tone::error, error.what());
-        return app.jobs.uploading.reset();
+        app.jobs.uploading.reset();
+        return say(app, Tone::error, error.what());
     }
-    if (!steps.done()) return;
-    app.renderer->set_picture(steps.take());
     app.uploaded = app.jobs.uploading->picture;
     app.jobs.uploading.reset();
     app.jobs.preparing.reset();
@@ -66,8 +77,8 @@ void advance_jobs(App& app) {
             say(app, Tone::hint, "Cancelled.");
             continue;
         }
-        if (!job->error.empty())
-            say(app, Tone::error, job->error);
+        if (job->failure)
+            say(app, Tone::error, failure_text(job->failure));
         else if (job->finish)
             job->finish(app);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -29,7 +30,7 @@ struct Job {
     std::atomic<bool> done = false;  ///< the thread has ended
     std::atomic<bool> given_up = false;
     std::atomic<float> progress = -1;  ///< [0, 1]; below: nobody knows
-    std::string error;                 ///< written by the thread before done
+    std::exception_ptr failure;        ///< written by the thread before done
     std::function<void(App&)> finish;  ///< written by the thread before done
     std::jthread thread;
 };
@@ -53,7 +54,8 @@ struct Jobs {
 /// looks at Job::given_up before it touches the file.
 using Work = std::function<std::function<void(App&)>(Job& job)>;
 
-/// Runs `work` on a thread. An Error it throws is said.
+/// Runs `work` on a thread, or where none can be started at once, while the window waits. What it throws is
+/// said.
 void start_job(App& app, std::string title, JobKind kind, Work work);
 
 /// Begins to hand a picture to the renderer; App::uploaded is it when that is done.

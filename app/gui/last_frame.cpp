@@ -1,5 +1,6 @@
 #include "gui/last_frame.h"
 
+#include <new>
 #include <span>
 #include <utility>
 
@@ -20,7 +21,7 @@ void append(std::vector<std::byte>& bytes, const T& value) {
 
 }  // namespace
 
-bool LastFrame::differs(const ImDrawData& data) {
+bool LastFrame::differs(const ImDrawData& data) try {
     std::vector<std::byte> drawn;
     drawn.reserve(drawn_.size());
     append(drawn, data.DisplaySize);
@@ -38,6 +39,9 @@ bool LastFrame::differs(const ImDrawData& data) {
     }
     if (drawn == drawn_) return false;
     drawn_ = std::move(drawn);
+    return true;
+} catch (const std::bad_alloc&) {  // rather drawn once too often
+    drawn_.clear();
     return true;
 }
 

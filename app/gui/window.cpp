@@ -3,11 +3,13 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <future>
+#include <system_error>
 
 #include "editor/commands.h"
 #include "gui/actions.h"
@@ -21,8 +23,6 @@
 namespace probewarp {
 
 namespace {
-
-App& app_of(GLFWwindow* window) { return *static_cast<App*>(glfwGetWindowUserPointer(window)); }
 
 ImVec2 canvas_corner(const App& app) { return {app.px(look::tools), app.px(look::menu)}; }
 
@@ -117,11 +117,11 @@ GLFWwindow* open_window(float scale) {
 
 void set_callbacks(GLFWwindow* window) {
     set_input_callbacks(window);
-    glfwSetWindowCloseCallback(window, &on_close);
-    glfwSetDropCallback(window, &on_drop);
-    glfwSetWindowRefreshCallback(window, &on_damage);
-    glfwSetFramebufferSizeCallback(window, &on_size);
-    glfwSetWindowContentScaleCallback(window, &on_content_scale);
+    glfwSetWindowCloseCallback(window, &on<&on_close>);
+    glfwSetDropCallback(window, &on<&on_drop>);
+    glfwSetWindowRefreshCallback(window, &on<&on_damage>);
+    glfwSetFramebufferSizeCallback(window, &on<&on_size>);
+    glfwSetWindowContentScaleCallback(window, &on<&on_content_scale>);
 }
 
 /// ImGui itself; its fonts are rasterised on a thread of their own from the beginning on.
@@ -132,7 +132,11 @@ struct Toolkit {
         ImGui::CreateContext();
         ImGui::GetIO().IniFilename = nullptr;
         ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-        fonts = std::async(std::launch::async, &load_fonts, scale);
+        try {
+            fonts = std::async(std::launch::async, &load_fonts, scale);
+        } catch (const std::system_error&) {  // there is no thread for it
+            fonts = std::async(std::launch::deferred, &load_fonts, scale);
+        }
     }
     ~Toolkit() {
         if (fonts.valid()) fonts.wait();
@@ -178,14 +182,8 @@ void show_frame(App& app) {
     ++app.frames;
 }
 
-void draw_frame(App& app) {
-    if (!app.fonts.text) rebuild_fonts(app);
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    place_mouse(app);
-    ImGui::NewFrame();
-    begin_number_fields(app);
-    app.overlays.clear();
+/// The canvas and the panels round it.
+void draw_workplace(App& app) {
     const ImVec2 display = ImGui::GetIO().DisplaySize, corner = canvas_corner(app);
     const float panel = has_picture(app.editor) ? app.px(look::panel) : 0;
     // Behind work that the window waits for nothing can be used; it keeps its looks, since most is over at
@@ -201,6 +199,34 @@ void draw_frame(App& app) {
     draw_status_bar(app);
     ImGui::EndDisabled();
     ImGui::PopStyleVar();
+}
+
+/// In the workplace's stead where it cannot be drawn: the menus, so that the document can be saved.
+void draw_makeshift(App& app) {
+    draw_menu_bar(app);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin("##makeshift", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::TextUnformatted("The picture cannot be shown now. It can be saved.");
+    if (ImGui::Button("Show it again")) app.failed_frames = 0;
+    ImGui::End();
+}
+
+void draw_frame(App& app) {
+    if (!app.fonts.text) rebuild_fonts(app);
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    place_mouse(app);
+    ImGui::NewFrame();
+    begin_number_fields(app);
+    app.overlays.clear();
+    // One that failed once is tried once more.
+    if (app.failed_frames < 2)
+        draw_workplace(app);
+    else
+        draw_makeshift(app);
     draw_file_dialog(app);
     draw_export_dialog(app);
     draw_levels_dialog(app);
@@ -217,12 +243,28 @@ void draw_frame(App& app) {
     show_frame(app);
 }
 
+/// Draws a frame, and ends one that fails so that another can begin.
+void draw_guarded_frame(App& app) {
+    const bool makeshift = app.failed_frames >= 2;
+    if (guarded(app, [&] { draw_frame(app); })) {
+        app.failed_frames = makeshift ? std::min(app.failed_frames, 2) : 0;
+        return;
+    }
+    ++app.failed_frames;
+    if (ImGui::GetCurrentContext()->WithinFrameScope) {
+        ImGui::ErrorCheckEndFrameRecover(nullptr);
+        ImGui::EndFrame();
+    }
+}
+
 /// Sleeps until there is something to do: idle, the program uses no processor time.
 void wait_for_events(App& app) {
     if (is_busy(app) && !app.jobs.uploading) {  // leaves the processor to those who work
         glfwWaitEventsTimeout(0.03);
         return app.wake();
     }
+    // One failure after the other does not keep the processor busy.
+    if (app.failed_frames > 2) return glfwWaitEventsTimeout(0.1);
     if (app.frames_wanted > 0 || wants_trial(app)) return glfwPollEvents();
     const double message = next_message_change(app);
     const double caret = ImGui::GetIO().WantTextInput ? 0.3 : -1;  // a text field's caret blinks
@@ -245,19 +287,22 @@ void run(App& app) {
     const bool leaves_at_once = std::getenv("PROBEWARP_QUIT_AFTER_FIRST_FRAME") != nullptr;
     const bool opens = is_busy(app);
     while (!app.quit) {
-        begin_polling(app);
-        wait_for_events(app);
-        end_polling(app);
-        hand_on_input(app);
-        advance_jobs(app);
-        handle_requests(app);
-        set_title(app);
-        draw_frame(app);
+        guarded(app, [&] {
+            begin_polling(app);
+            wait_for_events(app);
+            end_polling(app);
+        });
+        guarded(app, [&] { hand_on_input(app); });
+        guarded(app, [&] { advance_jobs(app); });
+        guarded(app, [&] { handle_requests(app); });
+        guarded(app, [&] { set_title(app); });
+        settle_trouble(app);
+        draw_guarded_frame(app);
         if (leaves_at_once && (!opens || app.shown.picture)) return;
         if (app.frames_wanted > 0)
             --app.frames_wanted;
         else if (wants_trial(app))
-            advance_trial(app);
+            guarded(app, [&] { advance_trial(app); });
     }
 }
 

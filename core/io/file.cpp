@@ -4,18 +4,18 @@
 #include "io/file.h"
 
 #include <fcntl.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "io/printable.h"
+#include "io/same_file.h"
+#include "io/temporary_file.h"
 
 namespace probewarp {
 
@@ -71,95 +71,20 @@ std::size_t read_all(int fd, std::span<std::byte> bytes, const fs::path& path) {
 
 // ---- writing ----
 
-/// Thrown between the steps of saving; write_file makes the sentence of it.
-struct SaveError {
-    std::string why;
-};
-
-[[noreturn]] void fail(int error) { throw SaveError{reason(error)}; }
-
-/// Where `path` leads when every symbolic link at its end is followed, also to a file that is not there yet.
-fs::path follow_links(fs::path path) {
-    for (int hops = 0; hops < 40; ++hops) {  // 40: as many as Linux follows
-        std::error_code no_link;
-        const fs::path target = fs::read_symlink(path, no_link);
-        if (no_link) return path;
-        path = target.is_absolute() ? target : path.parent_path() / target;
-    }
-    fail(ELOOP);
-}
-
 /// The folder to write in, as open() wants it.
 fs::path folder_of(const fs::path& path) {
     const fs::path folder = path.parent_path();
     return folder.empty() ? fs::path(".") : folder;
 }
 
-/// A file beside the target that nobody else has, removed again unless it was renamed to the target.
-struct Temporary {
-    fs::path path;
-    int fd = -1;
-
-    Temporary(const fs::path& target, mode_t mode) {
-        // 200 bytes: with the dots and the random part the name stays within the 255 that file systems allow.
-        std::string stem(".");
-        stem.append(target.filename().native(), 0, 200).append(".");
-        for (int tries = 0; tries < 100 && fd < 0; ++tries) {
-            path = folder_of(target) / (stem + random_suffix());
-            fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, mode);
-            if (fd < 0 && errno != EEXIST && errno != EINTR) fail(errno);
-        }
-        if (fd < 0) fail(EEXIST);
-    }
-    Temporary(const Temporary&) = delete;
-    Temporary& operator=(const Temporary&) = delete;
-    ~Temporary() {
-        if (fd >= 0) ::close(fd);
-        if (!path.empty()) ::unlink(path.c_str());
-    }
-
-    static std::string random_suffix() {
-        std::uint64_t number = 0;
-        if (::getrandom(&number, sizeof number, 0) != ssize_t(sizeof number)) fail(errno);
-        char digits[17];
-        std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(number));
-        return digits;
-    }
-
-    void write(std::span<const std::byte> bytes) const {
-        while (!bytes.empty()) {
-            const ssize_t put = ::write(fd, bytes.data(), bytes.size());
-            if (put >= 0) bytes = bytes.subspan(std::size_t(put));
-            if (put < 0 && errno != EINTR) fail(errno);
-        }
-    }
-
-    void restart() const {
-        if (::ftruncate(fd, 0) != 0 || ::lseek(fd, 0, SEEK_SET) != 0) fail(errno);
-    }
-
-    /// The bytes reach the disk before the name does: otherwise a crash could leave an empty file in the old
-    /// one's place.
-    void finish() {
-        if (::fsync(fd) != 0) fail(errno);
-        const int closing = std::exchange(fd, -1);
-        if (::close(closing) != 0) fail(errno);
-    }
-
-    void rename_to(const fs::path& target) {
-        if (::rename(path.c_str(), target.c_str()) != 0) fail(errno);
-        path.clear();
-    }
-};
-
 /// Owner first, for a change of owner takes permission bits away. Without the right to give a file away we
 /// keep our own name on it, as editors do.
 void take_over_permissions(int fd, const struct stat& old) {
     struct stat now {};
-    if (::fstat(fd, &now) != 0) fail(errno);
+    if (::fstat(fd, &now) != 0) fail_saving(errno);
     if ((now.st_uid != old.st_uid || now.st_gid != old.st_gid) && ::fchown(fd, old.st_uid, old.st_gid) != 0)
-        if (errno != EPERM && errno != EINVAL) fail(errno);
-    if (::fchmod(fd, old.st_mode & 07777) != 0) fail(errno);
+        if (errno != EPERM && errno != EINVAL) fail_saving(errno);
+    if (::fchmod(fd, old.st_mode & 07777) != 0) fail_saving(errno);
 }
 
 /// Does a step of saving, and says what is the matter with the path where it fails.
@@ -168,6 +93,7 @@ void saving(const fs::path& path, const Step& step) {
     try {
         step();
     } catch (const SaveError& error) {
+        wait_if_ending();
         throw Error("cannot save " + printable(path.native()) + ": " + error.why);
     }
 }
@@ -180,33 +106,49 @@ struct FileWriter::Saving {
     struct stat old {};
     bool replaces;
     Descriptor folder;
-    Temporary temporary;
+    TemporaryFile temporary;
 
     explicit Saving(const fs::path& path)
-        : target(follow_links(path)),
+        : target(end_of_links(path)),
           replaces(look(target, old)),
-          folder(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)),
+          folder(open_folder(target)),
           // Nobody reads in the temporary file what the old one kept from them.
-          temporary(target, replaces ? old.st_mode & 0600 : 0666) {
-        if (replaces) take_over_permissions(temporary.fd, old);
+          temporary(folder.fd, target.filename(), replaces ? 0600 : 0666) {}
+
+    static fs::path end_of_links(const fs::path& path) {
+        auto end = follow_links(path);
+        if (!end) fail_saving(ELOOP);
+        return std::move(*end);
+    }
+
+    /// Held while the file is written, so that the target stays the same whoever moves the folder. O_PATH
+    /// needs no permission to list it.
+    static int open_folder(const fs::path& target) {
+        const int fd = ::open(folder_of(target).c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+        if (fd < 0) fail_saving(errno);
+        return fd;
     }
 
     /// Whether there is a file to be replaced, and that it may be.
     static bool look(const fs::path& target, struct stat& old) {
         const bool replaces = ::lstat(target.c_str(), &old) == 0;
-        if (!replaces && errno != ENOENT) fail(errno);
+        if (!replaces && errno != ENOENT) fail_saving(errno);
         if (replaces && !S_ISREG(old.st_mode)) throw SaveError{"it " + kind(old.st_mode)};
         if (!target.has_filename()) throw SaveError{"it names no file"};
-        if (replaces && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail(errno);
+        if (replaces && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail_saving(errno);
         return replaces;
     }
 
+    /// The bytes reach the disk before the name does: otherwise a crash could leave an empty file in the old
+    /// one's place.
     void finish() {
-        temporary.finish();
-        temporary.rename_to(target);
+        if (replaces) take_over_permissions(temporary.descriptor(), old);
+        temporary.sync();
+        temporary.rename_to_target();
         // The new file stands whole by now, so neither a folder that we may not open nor a file system that
         // cannot sync one is a failure.
-        if (folder.fd >= 0) ::fsync(folder.fd);
+        const Descriptor listed(::openat(folder.fd, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+        if (listed.fd >= 0) ::fsync(listed.fd);
     }
 };
 

@@ -24,7 +24,9 @@ std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t 
 /// yet. A new file gets what the umask leaves of rw-rw-rw-. Throws Error("cannot save PATH: reason"); the old
 /// file is then untouched and no other file is left. Refused: a folder, a FIFO, a device, and a file that the
 /// caller may not write, although its folder would allow to replace it. Other hard links to the old file keep
-/// the old bytes; access control lists and extended attributes are not carried over.
+/// the old bytes; access control lists and extended attributes are not carried over. A signal that ends the
+/// program leaves the old file and nothing beside it as well; what SIGKILL leaves is removed by the next save
+/// of the same file (temporary_file.h).
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 /// A file's bytes, in parts one after the other.

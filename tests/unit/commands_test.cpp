@@ -58,12 +58,12 @@ struct CommandsTest : EditorTest {
     int expect_reasons() {
         int disabled = 0;
         for (const Command& command : commands()) {
-            const std::string_view why_not = command.why_not ? command.why_not(editor) : "";
+            const std::string why_not = command.why_not ? command.why_not(editor) : "";
             if (why_not.empty()) continue;
             ++disabled;
             const Editor before = editor;
             probewarp::run(editor, command);
-            EXPECT_EQ(take_notice(), std::string(why_not) + ".") << command.label;
+            EXPECT_EQ(take_notice(), why_not + ".") << command.label;
             EXPECT_EQ(editor.document, before.document) << command.label;
             EXPECT_EQ(editor.history.steps.size(), before.history.steps.size()) << command.label;
             EXPECT_EQ(editor.history.at, before.history.at) << command.label;
@@ -83,9 +83,9 @@ TEST_F(CommandsTest, WhatCannotBeUsedSaysWhy) {
     editor.selected = 1;
     EXPECT_EQ(expect_reasons(), 12);  // undo, redo, reset the pose, and nine that need paint
     probe().locked = true;
-    EXPECT_EQ(expect_reasons(), 17);  // and putting it back, and four that paint
+    EXPECT_EQ(expect_reasons(), 18);  // and deleting it, putting it back, and four that paint
     probe().now.x += 1;
-    EXPECT_EQ(expect_reasons(), 17);  // still: what has moved is locked
+    EXPECT_EQ(expect_reasons(), 18);  // still: what has moved is locked
     editor = Editor();
     EXPECT_GT(expect_reasons(), 15);
 }
@@ -157,6 +157,45 @@ TEST_F(CommandsTest, LockAndUnlock) {
     press_key(editor, {'L', true});
     EXPECT_FALSE(probe().locked || lock.on(editor));
     EXPECT_EQ(steps(), 2u);
+}
+
+TEST_F(CommandsTest, ALockedProbeIsKeptFromTheHand) {
+    open_with({probe_at({100, 80}, {120, 80}, 1), probe_at({300, 80}, {310, 80})});
+    probe().name = "Head";
+    probe().locked = true;
+    commit(editor, "Lock");
+    const Document before = editor.document;
+    editor.selected = 1;
+    for (const Shortcut key : {Shortcut{key_delete}, Shortcut{key_backspace}, Shortcut{key_left},
+                               Shortcut{key_down, false, true}, Shortcut{'R', true}}) {
+        EXPECT_TRUE(press_key(editor, key));
+        EXPECT_EQ(take_notice(), "Head is locked; unlock it first.") << to_text(key);
+        EXPECT_EQ(editor.document, before);
+    }
+    EXPECT_EQ(editor.selected, 1);
+    EXPECT_EQ(steps(), 1u);
+    press_key(editor, {'L', true});
+    press_key(editor, {key_delete});
+    ASSERT_EQ(editor.document.probes.size(), 1u);
+    EXPECT_EQ(probe().id, 2);
+}
+
+TEST_F(CommandsTest, WhatLockedProbesKeepIsSaid) {
+    open_with({probe_at({100, 80}, {120, 90}), probe_at({200, 80}, {220, 90}), probe_at({300, 80}, {300, 80}),
+               probe_at({50, 80}, {60, 80})});
+    probe(0).name = "Head";
+    probe(0).locked = probe(2).locked = true;  // the third has not moved: it keeps nothing
+    commit(editor, "Lock");
+    run("Reset the pose of all");
+    EXPECT_EQ(take_notice(), "Head is locked and stays as it is.");
+    EXPECT_EQ(probe(0).now, glm::dvec2(120, 90));
+    EXPECT_TRUE(at_rest(probe(1)));
+    undo_step(editor);
+    probe(1).locked = true;
+    commit(editor, "Lock");
+    run("Reset the pose of all");
+    EXPECT_EQ(take_notice(), "2 locked probes stay as they are.");
+    EXPECT_TRUE(at_rest(probe(3)));
 }
 
 TEST_F(CommandsTest, BackToRest) {

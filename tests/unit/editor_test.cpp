@@ -422,6 +422,25 @@ TEST_F(EditorTest, TheWheelKeepsWhatIsUnderThePointer) {
     EXPECT_EQ(editor.view.zoom, 2);
 }
 
+TEST_F(EditorTest, WhatFailedInTheMiddleIsTakenBack) {
+    open_with({probe_at({100, 80}, {100, 80})});
+    refresh(editor);
+    const Document before = editor.document;
+    const unsigned long version = editor.deformation.version, mesh_version = editor.deformation.mesh_version;
+    editor.selected = 7;  // as it was about to be chosen
+    probe().now.x = 123;
+    editor.document.probes.push_back(probe());
+    restore(editor);
+    EXPECT_EQ(editor.document, before);
+    EXPECT_EQ(editor.selected, 0);
+    EXPECT_FALSE(editor.gesture);
+    EXPECT_EQ(steps(), 0u);
+    refresh(editor);
+    EXPECT_TRUE(is_deformed(editor));
+    EXPECT_GT(editor.deformation.version, version);
+    EXPECT_GT(editor.deformation.mesh_version, mesh_version);
+}
+
 TEST_F(EditorTest, EditingAFieldIsOneStep) {
     open_with({probe_at({100, 80}, {100, 80})});
     const Document before = editor.document;

@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <fstream>
 
+#include "io/same_file.h"
 #include "pictures.h"
 #include "temporary_folder.h"
 
@@ -181,11 +183,121 @@ TEST_F(FileTest, AFailedWriteKeepsTheOldFileAndLeavesNoOther) {
     EXPECT_EQ(names_in(folder.path), std::vector<std::string>{"file"});
 }
 
+/// What a program that was killed while it saved `path` leaves.
+std::string left_over(const fs::path& path) {
+    FileWriter writer(path);
+    const auto names = names_in(path.parent_path());
+    const auto name = std::find_if(names.begin(), names.end(),
+                                   [](const std::string& n) { return n.ends_with(".probewarp-tmp"); });
+    return name == names.end() ? "" : *name;
+}
+
 TEST_F(FileTest, TakesNamesOfTheGreatestLength) {
-    path = folder.path / std::string(255, 'n');
-    write_file(path, bytes_of("x"));
-    EXPECT_EQ(got(), "x");
-    EXPECT_EQ(names_in(folder.path).size(), 1u);
+    for (const std::size_t length : {216, 217, 218, 219, 222, 223, 224, 250, 255}) {
+        path = folder.path / std::string(length, 'n');
+        const std::string name = left_over(path);
+        EXPECT_LE(name.size(), 255u);
+        std::ofstream(folder.path / name) << "left over";
+        write_file(path, bytes_of("x"));
+        EXPECT_EQ(got(), "x");
+        EXPECT_EQ(names_in(folder.path).size(), 1u) << length;
+        fs::remove(path);
+    }
+}
+
+TEST_F(FileTest, TemporaryNamesAreCutBetweenCharacters) {
+    std::string name;
+    while (name.size() < 254) name += "\xc3\xa4";
+    const std::string temporary = left_over(folder.path / name);
+    EXPECT_FALSE(temporary.empty());
+    for (std::size_t i = 0; i + 1 < temporary.size(); ++i)
+        EXPECT_EQ(temporary[i] == '\xc3', temporary[i + 1] == '\xa4');
+    EXPECT_NE(left_over(folder.path / name), left_over(folder.path / ("x" + name.substr(2))));
+}
+
+TEST_F(FileTest, RemovesWhatAKilledProgramLeftOfTheSameFileOnly) {
+    const std::string own = left_over(path), other = left_over(folder.path / "file2");
+    for (const std::string& name : {own, other}) std::ofstream(folder.path / name) << "left over";
+    FileWriter locked(folder.path / "file3");  // another save, under way
+    write_file(path, bytes_of("new"));
+    EXPECT_EQ(got(), "new");
+    EXPECT_FALSE(fs::exists(folder.path / own));
+    EXPECT_TRUE(fs::exists(folder.path / other));
+    EXPECT_EQ(names_in(folder.path).size(), 3u);
+}
+
+TEST_F(FileTest, ManyMayWriteTheSameFileAtOnce) {
+    {
+        std::vector<std::unique_ptr<FileWriter>> writers;
+        for (int i = 0; i < 40; ++i) {
+            writers.push_back(std::make_unique<FileWriter>(path));
+            writers.back()->write(bytes_of(std::to_string(i)));
+        }
+        EXPECT_EQ(names_in(folder.path).size(), writers.size());
+        writers[20]->finish();
+        EXPECT_EQ(got(), "20");
+        writers[5]->finish();
+        EXPECT_EQ(got(), "5");
+    }
+    EXPECT_EQ(names_in(folder.path), std::vector<std::string>{"file"});
+}
+
+TEST_F(FileTest, TheSameFileIsKnownByEveryName) {
+    put("x");
+    fs::create_directory(folder.path / "sub");
+    fs::create_symlink("file", folder.path / "soft");
+    fs::create_hard_link(path, folder.path / "hard");
+    fs::create_directory_symlink(folder.path, folder.path / "sub" / "up");
+    for (const fs::path& name :
+         {fs::path("soft"), fs::path("hard"), fs::path("./file"), fs::path("sub/../file"),
+          fs::path("sub/up/file"), fs::path("sub/up/sub/up/soft")})
+        EXPECT_TRUE(is_same_file(path, folder.path / name)) << name;
+    fs::copy_file(path, folder.path / "copy");
+    EXPECT_FALSE(is_same_file(path, folder.path / "copy"));
+    EXPECT_FALSE(is_same_file(path, folder.path / "sub"));
+}
+
+TEST_F(FileTest, TheSameFileIsKnownBeforeItIsThere) {
+    fs::create_symlink("sub/new", folder.path / "soft");
+    const auto same = [&](const char* a, const char* b) {
+        return is_same_file(folder.path / a, folder.path / b);
+    };
+    EXPECT_TRUE(same("soft", "sub/new")) << "of a folder that is not there";
+    fs::create_directory(folder.path / "sub");
+    fs::create_directory_symlink("sub", folder.path / "way");
+    EXPECT_TRUE(same("soft", "sub/new"));
+    EXPECT_TRUE(same("way/new", "sub/new"));
+    EXPECT_TRUE(same("way/a/b/new", "sub/a/b/new"));
+    EXPECT_FALSE(same("way/a/b/new", "sub/a/c/new"));
+    EXPECT_FALSE(same("new", "sub/new"));
+    fs::create_symlink("round", folder.path / "round");
+    EXPECT_FALSE(same("round", "file")) << "a circle leads nowhere";
+}
+
+TEST_F(FileTest, SaysWhichFileWouldBeWrittenOver) {
+    put("x");
+    fs::create_symlink("file", folder.path / "soft");
+    const UsedFile read[]{{"the input itself", folder.path / "other"}, {"the map", path}};
+    const UsedFile apart[]{{"-o a", folder.path / "a"}, {"--save b", folder.path / "b"}};
+    const UsedFile over[]{{"-o a", folder.path / "a"}, {"--save soft", folder.path / "soft"}};
+    const UsedFile twice[]{{"-o a", folder.path / "a"}, {"--save a", folder.path / "./a"}};
+    EXPECT_EQ(why_not_written(read, apart), "");
+    EXPECT_EQ(why_not_written(read, over), "--save soft: this is the map; expected another file");
+    EXPECT_EQ(why_not_written({}, twice), "--save a: this is the same file as -o a; expected another file");
+}
+
+TEST_F(FileTest, AnOpenDescriptorIsKnownForItsFile) {
+    put("x");
+    const UsedFile files[]{{"another", folder.path / "none"}, {"this", path}};
+    std::FILE* open = std::fopen(path.c_str(), "r");
+    ASSERT_TRUE(open);
+    EXPECT_EQ(find_open_file(files, ::fileno(open)), &files[1]);
+    std::fclose(open);
+    open = std::fopen("/dev/null", "r");
+    ASSERT_TRUE(open);
+    const UsedFile device[]{{"a device", "/dev/null"}};
+    EXPECT_EQ(find_open_file(device, ::fileno(open)), nullptr) << "what goes to a device harms nothing";
+    std::fclose(open);
 }
 
 }  // namespace

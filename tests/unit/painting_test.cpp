@@ -367,19 +367,27 @@ TEST_F(PaintingTest, LockedProbesKeepTheirPaint) {
     const PaintPtr first = probe(0).paint, second = probe(1).paint;
     probe(1).locked = true;
     commit(editor, "lock");
+    const std::string stays = probe(1).name + " is locked and stays as it is.";
     click({60, 120});
+    EXPECT_EQ(take_notice(), stays);
     mirror_left_to_right(editor);
+    EXPECT_EQ(take_notice(), stays);
     run_tasks();
     limit_paint(editor);
+    EXPECT_EQ(take_notice(), stays);
     run_tasks();
     normalise_paint(editor);
+    EXPECT_EQ(take_notice(), stays);
     run_tasks();
     clear_all_paint(editor);
+    EXPECT_EQ(take_notice(), stays);
     EXPECT_EQ(probe(1).paint, second);
     EXPECT_NE(probe(0).paint, first);
     editor.selected = 2;
-    EXPECT_EQ(find_command("Clear the probe's paint").why_not(editor), "The probe is locked");
-    EXPECT_EQ(find_command("Mirror left to right").why_not(editor), "The probe is locked");
+    const std::string locked = probe(1).name + " is locked; unlock it first";
+    EXPECT_EQ(find_command("Clear the probe's paint").why_not(editor), locked);
+    EXPECT_EQ(find_command("Mirror left to right").why_not(editor), locked);
+    EXPECT_EQ(find_command("Clear all paint").why_not(editor), "Every probe that has paint is locked");
 }
 
 TEST_F(PaintingTest, AStrokeKeepsTheBrushItBeganWith) {
