@@ -9,7 +9,9 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/drawing.h"
+#include "cli/output_kinds.h"
 #include "cli/render_many.h"
+#include "cli/report.h"
 #include "cli/timings.h"
 #include "io/file.h"
 #include "io/image_file.h"
@@ -20,27 +22,6 @@
 namespace probewarp {
 
 namespace {
-
-enum class Kind { image, mesh, project };
-
-struct OutputFormat {
-    Kind kind = Kind::image;
-    const ImageFormat* image = nullptr;  ///< of Kind::image
-};
-
-OutputFormat output_format(const RenderOptions& o) {
-    if (o.output == "-" && o.format.empty()) throw UsageError("-o -: expected --format with it");
-    std::string ending = std::filesystem::path(o.output).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](char c) { return char(std::tolower(c)); });
-    if (o.format == "obj" || (o.format.empty() && ending == ".obj")) return {Kind::mesh};
-    if (o.format == "probewarp" || (o.format.empty() && ending == project_extension)) return {Kind::project};
-    const ImageFormat* format = o.format.empty() ? image_format_of(o.output) : find_image_format(o.format);
-    if (!format || !format->encode)
-        throw UsageError(fmt::format("{} cannot be written; expected png, jpeg, bmp, tga, obj or probewarp",
-                                     o.format.empty() ? o.output : "--format " + o.format));
-    return {Kind::image, format};
-}
 
 ExportSettings export_settings(const RenderOptions& o) {
     ExportSettings settings;
@@ -80,15 +61,13 @@ void check_deform(const RenderOptions& o, const Document& document) {
             document.blend));
 }
 
-void check_heat(const RenderOptions& o, Kind kind, const Document& document) {
+void check_heat(const RenderOptions& o, const Document& document) {
     if (o.heat.empty()) {
         if (o.opacity || o.iso_lines)
             throw UsageError(
                 fmt::format("--{}: expected --heat with it", o.opacity ? "opacity" : "iso-lines"));
         return;
     }
-    if (kind != Kind::image)
-        throw UsageError("--heat: this output has no pixels; expected a picture's format");
     if (o.heat != "all")
         probe_named(document, o.heat, "--heat");
     else if (document.probes.empty())
@@ -112,7 +91,7 @@ void write_output(const RenderOptions& o, std::span<const std::byte> bytes, Timi
 /// The one picture of `--image`, or null for the input's own.
 PicturePtr other_picture(const RenderOptions& o, Pixels pixels) {
     if (o.images.empty()) return nullptr;
-    return std::make_shared<Picture>(read_picture(o.images.front(), pixels));
+    return std::make_shared<Picture>(read_picture(o.images.front(), pixels, {.salvage = o.salvage}));
 }
 
 void check_not_the_input(const RenderOptions& o, const std::filesystem::path& output) {
@@ -122,8 +101,8 @@ void check_not_the_input(const RenderOptions& o, const std::filesystem::path& ou
             fmt::format("-o {}: this is the input itself; expected another file", output.string()));
 }
 
-RenderPlan plan_of(const RenderOptions& o, const ImageFormat& format) {
-    RenderPlan plan{o, {&format, export_settings(o), {}}};
+RenderPlan plan_of(const RenderOptions& o, const OutputFormat& format) {
+    RenderPlan plan{o, format, {format.image, export_settings(o), {}}};
     PictureFile& file = plan.file;
     file.encode.background = file.settings.background.value_or(file.encode.background);
     file.encode.compression =
@@ -131,11 +110,18 @@ RenderPlan plan_of(const RenderOptions& o, const ImageFormat& format) {
     return plan;
 }
 
-void render_picture(const RenderOptions& o, const ImageFormat& format, const Deformation& deformation,
+/// Where it is asked for. view: of a picture; null for another output. Throws Error.
+void report(const RenderOptions& o, const OutputFormat& format, const Deformation& deformation,
+            const View* view) {
+    if (o.report && !print_report(report_of(o.output, format, deformation, view)))
+        throw Error("cannot write to standard output");
+}
+
+void render_picture(const RenderOptions& o, const OutputFormat& format, const Deformation& deformation,
                     Timings& timings) {
     const RenderPlan plan = plan_of(o, format);
-    export_view(deformation,
-                plan.file.settings);  // refuses what is too large before anything is opened
+    // Refuses what is too large before anything is opened.
+    const View view = export_view(deformation, plan.file.settings);
     Progress progress(o.quiet);
     Output output(output_path(o), timings);
     const Picture& picture = *deformation.source.picture;
@@ -151,6 +137,17 @@ void render_picture(const RenderOptions& o, const ImageFormat& format, const Def
     }
     output.write(timings.measure(Stage::encode, [&] { return encoding->finish(); }));
     output.finish();
+    report(o, format, deformation, &view);
+}
+
+void render_mesh(const RenderOptions& o, const Deformation& deformation, Timings& timings) {
+    if (o.output == "-") {
+        const std::string text = encode_obj(deformation);
+        return write_output(o, std::as_bytes(std::span(text)), timings);
+    }
+    const ObjContents contents =
+        timings.measure(Stage::encode, [&] { return obj_contents(o.output, deformation); });
+    timings.measure(Stage::write, [&] { write_obj(contents); });
 }
 
 void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
@@ -162,19 +159,25 @@ void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
     // A picture is drawn while it is still being decoded.
     const Pixels pixels = format.kind == Kind::image ? Pixels::arriving : Pixels::whole;
     const Document document = timings.measure(Stage::decode, [&] {
-        return posed_on(read_document(o.input, o.images.empty() ? pixels : Pixels::whole),
-                        other_picture(o, pixels), o);
+        return posed_on(
+            read_document(o.input, o.images.empty() ? pixels : Pixels::whole, {.salvage = o.salvage}),
+            other_picture(o, pixels), o);
     });
     check_deform(o, document);
-    check_heat(o, format.kind, document);
-    if (format.kind == Kind::project) return write_output(o, encode_project(document), timings);
-    if (o.output != "-") check_not_the_input(o, o.output);
-
+    check_heat(o, document);
     Deformation deformation;
-    timings.measure(Stage::weights, [&] { update(deformation, document); });
-    if (format.kind == Kind::image) return render_picture(o, *format.image, deformation, timings);
-    const std::string text = encode_obj(document, deformation);
-    write_output(o, std::as_bytes(std::span(text)), timings);
+    const auto deform = [&] { timings.measure(Stage::weights, [&] { update(deformation, document); }); };
+    if (format.kind == Kind::project) {
+        write_output(o, encode_project(document), timings);
+        if (!o.report) return;
+        deform();
+        return report(o, format, deformation, nullptr);
+    }
+    for (const auto& file : written_files(o.output, format)) check_not_the_input(o, file);
+    deform();
+    if (format.kind == Kind::image) return render_picture(o, format, deformation, timings);
+    render_mesh(o, deformation, timings);
+    report(o, format, deformation, nullptr);
 }
 
 /// `--image A B C`: what would be wrong with every one of them is said before the first.
@@ -182,12 +185,12 @@ int render_all(const RenderOptions& o, OutputFormat format, Timings& timings) {
     if (format.kind != Kind::image)
         throw UsageError(
             fmt::format("-o {}: expected a picture's format for --image with {{name}}", o.output));
-    const Document base = read_document(o.input);
+    const Document base = read_document(o.input, Pixels::whole, {.salvage = o.salvage});
     const Document posed = posed_on(base, nullptr, o);
     check_deform(o, posed);
-    check_heat(o, format.kind, posed);
+    check_heat(o, posed);
     return render_many(
-        plan_of(o, *format.image), base,
+        plan_of(o, format), base,
         [&o](const Document& on, PicturePtr picture) { return posed_on(on, std::move(picture), o); },
         timings);
 }
@@ -206,6 +209,7 @@ int render(const RenderOptions& o) {
     keep_freed_memory();
     Timings timings;
     const OutputFormat format = output_format(o);
+    check_options(o, format);
     export_settings(o);  // throws where they cannot be understood
     int code = 0;
     if (is_many(o))
