@@ -180,7 +180,7 @@ constexpr Command all[] = {
      [](const Editor& e) { return e.show_mesh; }},
     {"View",
      "Show folded triangles",
-     {},
+     {'M', false, true},
      nullptr,
      [](Editor& e) { e.show_folds = !e.show_folds; },
      false,
