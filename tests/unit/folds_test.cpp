@@ -50,20 +50,25 @@ TEST(Folds, AreNoneWhereATriangleHasNoArea) {
     EXPECT_EQ(folded_triangles(mesh, now), 0u);
 }
 
-TEST(Folds, AreNoneOfAPictureThatMovesAsOne) {
-    // Probes a hair beside a grid's line cut slivers; turned and moved far, these are all rounding.
-    Document document = blank_document(3000, 2000, 100);
-    const glm::dvec2 centre{1500, 1000}, way{811.3, -977.7};
-    const double angle = 33 * degrees;
-    const auto moved = [&](glm::dvec2 p) {
-        const glm::dvec2 v = p - centre;
-        return centre + way +
-               glm::dvec2(std::cos(angle) * v.x - std::sin(angle) * v.y,
-                          std::sin(angle) * v.x + std::cos(angle) * v.y);
-    };
-    for (const glm::dvec2 rest : {glm::dvec2{300.004, 300.1}, {1199.996, 1503.3}, {2700.5, 1500.003}})
-        add_probe(document, rest, moved(rest), angle);
-    EXPECT_EQ(folds_of(document), 0u);
+TEST(Folds, AreNoneOfSliversThatAreRounded) {
+    // Probes a hair beside the diagonals of small cells cut slivers; turned and moved far, their height is
+    // less than a float can hold there.
+    Image image;
+    image.width = 3000, image.height = 2001;
+    std::vector<glm::dvec2> rests;
+    for (int i = 0; i < 300; ++i) {
+        const double cell = 3 * (5 + 3 * i), along = 0.1 + 0.002 * i;
+        rests.push_back(glm::dvec2(cell, 3 * (7 + 2 * i)) + 3.0 * along + glm::dvec2(1e-3, 0));
+    }
+    const std::vector<std::uint8_t> all(1000 * 667, 1);
+    const Mesh mesh = probe_mesh(image, 1000, all, rests);
+    ASSERT_EQ(mesh.rest.size(), 1001u * 668 + 300);
+    std::vector<glm::vec2> now;
+    for (const glm::dvec2 v : mesh.rest)
+        now.emplace_back(glm::dvec2(15000.3, -9000.7) +
+                         glm::dvec2(std::cos(0.57) * v.x - std::sin(0.57) * v.y,
+                                    std::sin(0.57) * v.x + std::cos(0.57) * v.y));
+    EXPECT_EQ(folded_triangles(mesh, now), 0u);
 }
 
 TEST(Folds, AreWhereTwoProbesCross) {
