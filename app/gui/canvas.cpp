@@ -106,8 +106,9 @@ void draw_shown(App& app, const Shown& before) {
 void count_folds(App& app) {
     constexpr std::size_t quickly_counted = 1 << 17;  // triangles: far below a millisecond
     const Deformation& deformation = app.editor.deformation;
-    if (!deformation.binding || app.folds_version == deformation.version) return;
-    app.folds.reset();
+    if (deformation.binding && app.folds_version == deformation.version) return;
+    app.folds.reset();  // those of another document too
+    if (!deformation.binding) return;
     const bool waits = app.editor.gesture && mesh_of(deformation).triangles.size() / 3 > quickly_counted;
     if (waits || is_shaded(app)) return;
     app.folds = deformation.moved ? folded_triangles(mesh_of(deformation), deformation.now) : 0;
