@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <span>
 #include <sstream>
 
 #include "cli/arguments.h"
@@ -39,6 +40,11 @@ void add_backend(CLI::App& command, std::string& backend) {
                     "the first of the two that works")
         ->check(CLI::IsMember({"auto", "osmesa", "egl"}))
         ->envname("PROBEWARP_BACKEND");
+}
+
+void add_salvage(CLI::App& command, bool& salvage) {
+    command.add_flag("--salvage", salvage,
+                     "Open what is there of a picture that ends too soon; the rest is clear or black");
 }
 
 /// CLI::Range lets NaN pass.
@@ -88,8 +94,11 @@ void add_render(CLI::App& app, RenderOptions& o) {
     CLI::App* command = app.add_subcommand("render", "Deform a picture or a project and write the result");
     command->add_option("INPUT", o.input, "A picture or a project")->required();
     command
-        ->add_option("-o,--output", o.output,
-                     "PNG, JPEG, BMP, TGA, OBJ (the mesh) or probewarp (a project); - for standard output")
+        ->add_option(
+            "-o,--output", o.output,
+            "PNG, JPEG, BMP, TGA, OBJ (the mesh; its material NAME.mtl and the picture "
+            "NAME-texture.png are written beside it) or probewarp (a project); - for standard output, "
+            "where OBJ comes without these two")
         ->required();
     command->add_option("--probes", o.probes_csv, "Add the probes of a CSV file of the iPad program");
     command
@@ -124,6 +133,11 @@ void add_render(CLI::App& app, RenderOptions& o) {
                      "auto, processor or shader: which one moves the vertices; auto: the processor, which is "
                      "the quicker one for a picture that is drawn once")
         ->check(CLI::IsMember(names(deform_by_names)));
+    add_salvage(*command, o.salvage);
+    command->add_flag(
+        "--report", o.report,
+        "Tell on standard output what was written, as a JSON object a line: its files, where its "
+        "canvas lies on the picture, how many triangles are folded");
     command->add_flag("--timings", o.timings, "Tell where the time goes, on standard error");
     command->add_flag("--quiet", o.quiet, "Show no progress");
 }
@@ -143,6 +157,7 @@ void add_weights(CLI::App& app, WeightsOptions& o) {
         ->expected(1)
         ->take_all();
     command->add_option("--save", o.save, "FILE.probewarp: write the project with what was imported");
+    add_salvage(*command, o.salvage);
     command->add_flag("--quiet", o.quiet, "Do not tell what is written");
 }
 
@@ -150,6 +165,7 @@ void add_info(CLI::App& app, InfoOptions& o) {
     CLI::App* command = app.add_subcommand("info", "Tell what a picture or a project holds");
     command->add_option("INPUT", o.input, "A picture or a project")->required();
     command->add_flag("--json", o.json, "As JSON");
+    add_salvage(*command, o.salvage);
     add_backend(*command, o.backend);
 }
 
@@ -159,6 +175,19 @@ void heed_environment() {
     } catch (const Error& error) {
         throw UsageError(error.what());
     }
+}
+
+/// The options that the person wrote: "--scale". What an environment variable says is not among them.
+std::set<std::string, std::less<>> given_options(const CLI::App& command, std::span<char* const> arguments) {
+    std::set<std::string, std::less<>> given;
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name = option->get_name();
+        const bool written = std::ranges::any_of(arguments, [&](std::string_view argument) {
+            return argument == name || argument.starts_with(name + "=");
+        });
+        if (option->count() > 0 && (option->get_envname().empty() || written)) given.insert(name);
+    }
+    return given;
 }
 
 int failed(int code, const std::string& message) {
@@ -178,6 +207,10 @@ int print_answer(const CLI::App& app, const CLI::ParseError& asked) {
 
 void print_failure(const std::string& message) {
     print_aside(fmt::format("probewarp: {}\n", printable(message)));
+}
+
+std::string with_salvage_hint(const IncompleteFile& error) {
+    return fmt::format("{}; --salvage opens what is there", error.what());
 }
 
 namespace {
@@ -205,9 +238,11 @@ int run_command(int argc, char** argv, int (*open_window)(const std::string& pat
         if (!app.get_subcommands().empty() && app.count("--deform") > 0)
             throw UsageError("--deform: before a command it is nobody's; expected it behind render");
         limit_threads_to_what_starts();
-        if (app.got_subcommand("render"))
+        if (const CLI::App* command = app.get_subcommand("render"); command->parsed()) {
+            render_options.given = given_options(*command, std::span(argv, std::size_t(argc)));
             return render(render_options);
-        else if (app.got_subcommand("weights"))
+        }
+        if (app.got_subcommand("weights"))
             weights(weights_options);
         else if (app.got_subcommand("info"))
             info(info_options);
@@ -219,6 +254,8 @@ int run_command(int argc, char** argv, int (*open_window)(const std::string& pat
         return failed(2, fmt::format("{}; see probewarp --help", error.what()));
     } catch (const UsageError& error) {
         return failed(2, error.what());
+    } catch (const IncompleteFile& error) {
+        return failed(1, with_salvage_hint(error));
     } catch (const std::bad_alloc&) {
         print_aside("probewarp: there is not enough memory\n");
         return 1;

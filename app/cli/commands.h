@@ -1,16 +1,22 @@
 // The subcommands' options as values, and the functions that carry them out. They throw Error.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "model/document.h"
+#include "model/error.h"
 
 namespace probewarp {
 
 /// One line on standard error.
 void print_failure(const std::string& message);
+
+/// The error's sentence, with the option that opens such a file.
+std::string with_salvage_hint(const IncompleteFile& error);
 
 /// What a command may set of the input's mesh and weights; empty: as the input has it.
 struct BindingOptions {
@@ -43,6 +49,9 @@ struct RenderOptions : BindingOptions {
     std::string compression = "default";  ///< of PNG
     bool timings = false;                 ///< told on standard error
     bool quiet = false;
+    bool report = false;                       ///< what was written, as JSON on standard output
+    bool salvage = false;                      ///< as DecodeOptions has it
+    std::set<std::string, std::less<>> given;  ///< the options that the person wrote: "--scale"
 };
 /// Returns the exit code: 1 where some of several pictures failed, each with its sentence on standard error.
 int render(const RenderOptions& options);
@@ -54,6 +63,7 @@ struct WeightsOptions : BindingOptions {
     std::vector<std::string> imports;  ///< NAME=FILE.png
     std::string save;                  ///< a project; empty: none
     bool quiet = false;
+    bool salvage = false;  ///< as DecodeOptions has it
 };
 void weights(const WeightsOptions& options);
 
@@ -61,6 +71,7 @@ struct InfoOptions {
     std::string input;
     std::string backend = "auto";
     bool json = false;
+    bool salvage = false;  ///< as DecodeOptions has it
 };
 void info(const InfoOptions& options);
 

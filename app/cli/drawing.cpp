@@ -86,7 +86,7 @@ void Drawer::hold(const Deformation& deformation) {
     const Image& image = picture.image;
     wait_for_rows(picture, image.height);
     renderer.set_picture(upload_picture(image));
-    renderer.set_mesh(deformation.binding->mesh);
+    renderer.set_mesh(deformation.binding->mesh, deformation.binding->still);
     if (plan_.options.deform == "shader") {
         renderer.set_weights(weights_of(deformation));
         renderer.set_pose(deformation.transformations, glm::vec2(centre(image)));

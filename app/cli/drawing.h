@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/output_kinds.h"
 #include "cli/timings.h"
 #include "exporting/picture_file.h"
 #include "io/file.h"
@@ -19,6 +20,7 @@ namespace probewarp {
 /// What all pictures of one command get alike.
 struct RenderPlan {
     const RenderOptions& options;
+    OutputFormat format;  ///< of a picture
     PictureFile file;
 };
 

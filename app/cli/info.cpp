@@ -12,6 +12,7 @@
 #include "io/project.h"
 #include "io/same_file.h"
 #include "model/deformation.h"
+#include "model/folds.h"
 #include "model/instruction_set.h"
 #include "render/context.h"
 #include "render/deform_trial.h"
@@ -76,8 +77,23 @@ void add_renderer(Json& json, const std::string& backend) {
     }
 }
 
+/// What the file says about its colours and its pixels, beside what `description` has said always; null where
+/// it does not say. Numbers as PNG's specification writes them: a gamma of 1 is linear light.
+void add_description(Json& json, const Description& said) {
+    constexpr double whole = 100000;
+    json["gamma"] = said.gamma ? Json(*said.gamma / whole) : Json();
+    json["chromaticities"] = Json();
+    if (said.chromaticities)
+        for (const std::uint32_t value : *said.chromaticities)
+            json["chromaticities"].push_back(value / whole);
+    json["srgb_intent"] = said.srgb_intent ? Json(*said.srgb_intent) : Json();
+    json["cicp"] = said.cicp ? Json(*said.cicp) : Json();
+    json["aspect"] = said.aspect ? Json({said.aspect->x, said.aspect->y}) : Json();
+    json["exif_bytes"] = said.exif.size();
+}
+
 Json description(const InfoOptions& o) {
-    const Document document = read_document(o.input);
+    const Document document = read_document(o.input, Pixels::whole, {.salvage = o.salvage});
     Deformation deformation;
     update(deformation, document);
     const Picture& picture = *document.picture;
@@ -90,12 +106,14 @@ Json description(const InfoOptions& o) {
               {"height", picture.image.height},
               {"bits", picture.image.bits()},
               {"alpha", has_alpha(picture.image)},
+              {"incomplete", picture.image.incomplete},
               {"icc_bytes", picture.image.description.icc.size()},
               {"pixels_per_metre", nullptr},
               {"mesh", json_of(document.mesh, *deformation.binding)},
               {"weights", json_of(document.weights)},
               {"blend", document.blend},
               {"cancelled_vertices", deformation.cancelled},
+              {"folded_triangles", folded_triangles(mesh_of(deformation), deformation.now)},
               {"stiffness", document.stiffness && !is_blank(*document.stiffness)},
               {"probes", std::move(probes)},
               {"instruction_set", instruction_sets().front()}};
@@ -103,6 +121,7 @@ Json description(const InfoOptions& o) {
     if (picture.image.description.resolution)
         json["pixels_per_metre"] = {picture.image.description.resolution->x,
                                     picture.image.description.resolution->y};
+    add_description(json, picture.image.description);
     return json;
 }
 
@@ -140,13 +159,15 @@ void print_deform(const Json& deform) {
 
 void print_text(const Json& json) {
     const auto text = [&json](const char* field) { return printable(json[field].get<std::string>()); };
-    print("{}: {} ({}), {} x {} pixels, {} bits{}\n", text("file"), text("picture"), text("format"),
+    print("{}: {} ({}), {} x {} pixels, {} bits{}{}\n", text("file"), text("picture"), text("format"),
           json["width"].get<int>(), json["height"].get<int>(), json["bits"].get<int>(),
-          json["alpha"].get<bool>() ? ", with transparency" : "");
+          json["alpha"].get<bool>() ? ", with transparency" : "",
+          json["incomplete"].get<bool>() ? ", incomplete" : "");
     print_mesh(json["mesh"]);
     print_weights(json["weights"]);
     print("blend: {}; vertices for which it has no answer, so that they follow their heaviest probe: {}\n",
           text("blend"), json["cancelled_vertices"].get<std::size_t>());
+    print("triangles that lie folded over: {}\n", json["folded_triangles"].get<std::size_t>());
     print("stiffness: {}\n", json["stiffness"].get<bool>() ? "painted" : "none");
     print("probes: {}\n", json["probes"].size());
     for (const Json& p : json["probes"])

@@ -8,7 +8,10 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/drawing.h"
+#include "cli/output_kinds.h"
+#include "cli/printing.h"
 #include "cli/render_many.h"
+#include "cli/report.h"
 #include "cli/timings.h"
 #include "io/file.h"
 #include "io/image_file.h"
@@ -20,27 +23,6 @@
 namespace probewarp {
 
 namespace {
-
-enum class Kind { image, mesh, project };
-
-struct OutputFormat {
-    Kind kind = Kind::image;
-    const ImageFormat* image = nullptr;  ///< of Kind::image
-};
-
-OutputFormat output_format(const RenderOptions& o) {
-    if (o.output == "-" && o.format.empty()) throw UsageError("-o -: expected --format with it");
-    std::string ending = std::filesystem::path(o.output).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](char c) { return char(std::tolower(c)); });
-    if (o.format == "obj" || (o.format.empty() && ending == ".obj")) return {Kind::mesh};
-    if (o.format == "probewarp" || (o.format.empty() && ending == project_extension)) return {Kind::project};
-    const ImageFormat* format = o.format.empty() ? image_format_of(o.output) : find_image_format(o.format);
-    if (!format || !format->encode)
-        throw UsageError(fmt::format("{} cannot be written; expected png, jpeg, bmp, tga, obj or probewarp",
-                                     o.format.empty() ? o.output : "--format " + o.format));
-    return {Kind::image, format};
-}
 
 ExportSettings export_settings(const RenderOptions& o) {
     ExportSettings settings;
@@ -80,15 +62,13 @@ void check_deform(const RenderOptions& o, const Document& document) {
             document.blend));
 }
 
-void check_heat(const RenderOptions& o, Kind kind, const Document& document) {
+void check_heat(const RenderOptions& o, const Document& document) {
     if (o.heat.empty()) {
         if (o.opacity || o.iso_lines)
             throw UsageError(
                 fmt::format("--{}: expected --heat with it", o.opacity ? "opacity" : "iso-lines"));
         return;
     }
-    if (kind != Kind::image)
-        throw UsageError("--heat: this output has no pixels; expected a picture's format");
     if (o.heat != "all")
         probe_named(document, o.heat, "--heat");
     else if (document.probes.empty())
@@ -112,23 +92,24 @@ void write_output(const RenderOptions& o, std::span<const std::byte> bytes, Timi
 /// The one picture of `--image`, or null for the input's own.
 PicturePtr other_picture(const RenderOptions& o, Pixels pixels) {
     if (o.images.empty()) return nullptr;
-    return std::make_shared<Picture>(read_picture(o.images.front(), pixels));
+    return std::make_shared<Picture>(read_picture(o.images.front(), pixels, {.salvage = o.salvage}));
 }
 
 /// Refuses to write over what is read, before anything is.
-void check_render_files(const RenderOptions& o) {
+void check_render_files(const RenderOptions& o, const OutputFormat& format) {
     std::vector<UsedFile> read{{"the input itself", o.input}}, written;
     if (!o.probes_csv.empty()) read.push_back({"the file of --probes", o.probes_csv});
     for (const std::string& image : o.images) read.push_back({"one of the pictures of --image", image});
     if (is_many(o))
         for (const auto& path : output_paths(o)) written.push_back({"-o " + path.string(), path});
-    else if (const auto path = output_path(o))
-        written.push_back({"-o " + path->string(), *path});
+    else
+        for (const auto& path : written_files(o.output, format))
+            written.push_back({"-o " + path.string(), path});
     check_files(read, written);
 }
 
-RenderPlan plan_of(const RenderOptions& o, const ImageFormat& format) {
-    RenderPlan plan{o, {&format, export_settings(o), {}}};
+RenderPlan plan_of(const RenderOptions& o, const OutputFormat& format) {
+    RenderPlan plan{o, format, {format.image, export_settings(o), {}}};
     PictureFile& file = plan.file;
     file.encode.background = file.settings.background.value_or(file.encode.background);
     file.encode.compression =
@@ -136,11 +117,17 @@ RenderPlan plan_of(const RenderOptions& o, const ImageFormat& format) {
     return plan;
 }
 
-void render_picture(const RenderOptions& o, const ImageFormat& format, const Deformation& deformation,
+/// Where it is asked for. view: of a picture; null for another output
+void report(const RenderOptions& o, const OutputFormat& format, const Deformation& deformation,
+            const View* view) {
+    if (o.report) print("{}\n", report_of(o.output, format, deformation, view));
+}
+
+void render_picture(const RenderOptions& o, const OutputFormat& format, const Deformation& deformation,
                     Timings& timings) {
     const RenderPlan plan = plan_of(o, format);
-    export_view(deformation,
-                plan.file.settings);  // refuses what is too large before anything is opened
+    // Refuses what is too large before anything is opened.
+    const View view = export_view(deformation, plan.file.settings);
     Progress progress(o.quiet);
     Output output(output_path(o), timings);
     const Picture& picture = *deformation.source.picture;
@@ -156,6 +143,17 @@ void render_picture(const RenderOptions& o, const ImageFormat& format, const Def
     }
     output.write(timings.measure(Stage::encode, [&] { return encoding->finish(); }));
     output.finish();
+    report(o, format, deformation, &view);
+}
+
+void render_mesh(const RenderOptions& o, const Deformation& deformation, Timings& timings) {
+    if (o.output == "-") {
+        const std::string text = encode_obj(deformation);
+        return write_output(o, std::as_bytes(std::span(text)), timings);
+    }
+    const ObjContents contents =
+        timings.measure(Stage::encode, [&] { return obj_contents(o.output, deformation); });
+    timings.measure(Stage::write, [&] { write_obj(contents); });
 }
 
 void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
@@ -167,18 +165,24 @@ void render_one(const RenderOptions& o, OutputFormat format, Timings& timings) {
     // A picture is drawn while it is still being decoded.
     const Pixels pixels = format.kind == Kind::image ? Pixels::arriving : Pixels::whole;
     const Document document = timings.measure(Stage::decode, [&] {
-        return posed_on(read_document(o.input, o.images.empty() ? pixels : Pixels::whole),
-                        other_picture(o, pixels), o);
+        return posed_on(
+            read_document(o.input, o.images.empty() ? pixels : Pixels::whole, {.salvage = o.salvage}),
+            other_picture(o, pixels), o);
     });
     check_deform(o, document);
-    check_heat(o, format.kind, document);
-    if (format.kind == Kind::project) return write_output(o, encode_project(document), timings);
-
+    check_heat(o, document);
     Deformation deformation;
-    timings.measure(Stage::weights, [&] { update(deformation, document); });
-    if (format.kind == Kind::image) return render_picture(o, *format.image, deformation, timings);
-    const std::string text = encode_obj(document, deformation);
-    write_output(o, std::as_bytes(std::span(text)), timings);
+    const auto deform = [&] { timings.measure(Stage::weights, [&] { update(deformation, document); }); };
+    if (format.kind == Kind::project) {
+        write_output(o, encode_project(document), timings);
+        if (!o.report) return;
+        deform();
+        return report(o, format, deformation, nullptr);
+    }
+    deform();
+    if (format.kind == Kind::image) return render_picture(o, format, deformation, timings);
+    render_mesh(o, deformation, timings);
+    report(o, format, deformation, nullptr);
 }
 
 /// `--image A B C`: what would be wrong with every one of them is said before the first.
@@ -186,12 +190,12 @@ int render_all(const RenderOptions& o, OutputFormat format, Timings& timings) {
     if (format.kind != Kind::image)
         throw UsageError(
             fmt::format("-o {}: expected a picture's format for --image with {{name}}", o.output));
-    const Document base = read_document(o.input);
+    const Document base = read_document(o.input, Pixels::whole, {.salvage = o.salvage});
     const Document posed = posed_on(base, nullptr, o);
     check_deform(o, posed);
-    check_heat(o, format.kind, posed);
+    check_heat(o, posed);
     return render_many(
-        plan_of(o, *format.image), base,
+        plan_of(o, format), base,
         [&o](const Document& on, PicturePtr picture) { return posed_on(on, std::move(picture), o); },
         timings);
 }
@@ -210,8 +214,9 @@ int render(const RenderOptions& o) {
     keep_freed_memory();
     Timings timings;
     const OutputFormat format = output_format(o);
+    check_options(o, format);
     export_settings(o);  // throws where they cannot be understood
-    check_render_files(o);
+    check_render_files(o, format);
     int code = 0;
     if (is_many(o))
         code = render_all(o, format, timings);

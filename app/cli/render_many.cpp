@@ -12,6 +12,8 @@
 #include <span>
 
 #include "cli/arguments.h"
+#include "cli/printing.h"
+#include "cli/report.h"
 #include "io/file.h"
 
 namespace probewarp {
@@ -38,6 +40,7 @@ struct Work {
     std::optional<Output> file;
     std::unique_ptr<ImageEncoding> encoding;
     std::string error;
+    std::string report;    ///< where it is asked for
     tbb::task_group task;  ///< the decoding, later the writing
 
     void keep_error(const std::function<void()>& step) {
@@ -46,11 +49,18 @@ struct Work {
             step();
         } catch (const std::bad_alloc&) {
             error = fmt::format("{}: needs more memory than there is; expected a smaller picture", image);
+        } catch (const IncompleteFile& e) {
+            keep_error_named(with_salvage_hint(e));
         } catch (const std::exception& e) {
-            error = e.what();
-            if (error.find(image) == std::string::npos && error.find(output.string()) == std::string::npos)
-                error = fmt::format("{}: {}", image, error);
+            keep_error_named(e.what());
         }
+    }
+
+  private:
+    void keep_error_named(std::string sentence) {
+        error = std::move(sentence);
+        if (error.find(image) == std::string::npos && error.find(output.string()) == std::string::npos)
+            error = fmt::format("{}: {}", image, error);
     }
 };
 
@@ -86,7 +96,9 @@ class Batch {
         work.task.run([this, &work] {
             work.keep_error([&] {
                 timings_.measure(Stage::decode, [&] {
-                    work.document = pose_on_(base_, std::make_shared<Picture>(read_picture(work.image)));
+                    work.document =
+                        pose_on_(base_, std::make_shared<Picture>(read_picture(
+                                            work.image, Pixels::whole, {.salvage = plan_.options.salvage})));
                 });
             });
         });
@@ -102,6 +114,10 @@ class Batch {
                     progress_.show((double(index) + part) / double(works_.size()));
                 });
             });
+            if (plan_.options.report) {
+                const View view = export_view(deformation_, plan_.file.settings);
+                work.report = report_of(work.output, plan_.format, deformation_, &view);
+            }
         });
         work.document = {};
         work.task.run([this, &work] {
@@ -126,7 +142,10 @@ class Batch {
         Work& work = *works_[index];
         work.task.wait();
         retired_ = index + 1;
-        if (work.error.empty()) return;
+        if (work.error.empty()) {
+            if (plan_.options.report) print("{}\n", work.report);
+            return;
+        }
         ++failed_;
         progress_.clear();
         print_failure(work.error);

@@ -11,6 +11,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/output_kinds.h"
 #include "cli/printing.h"
 #include "io/file.h"
 #include "io/paint_file.h"
@@ -134,10 +135,11 @@ void check_weights_files(const Document& document, const WeightsOptions& o, std:
 void weights(const WeightsOptions& o) {
     if (o.output.empty() && o.save.empty())
         throw UsageError("weights: nothing would be written; expected -o FOLDER or --save FILE.probewarp");
+    check_options(o);
     if (!o.save.empty() && std::filesystem::path(o.save).extension() != project_extension)
         throw UsageError(
             fmt::format("--save {}: expected a name that ends with {}", o.save, project_extension));
-    Document document = read_document(o.input);
+    Document document = read_document(o.input, Pixels::whole, {.salvage = o.salvage});
     apply(o, document);
     const auto size = size_of(o, document.picture->image);
     if (document.probes.empty())

@@ -114,7 +114,7 @@ struct Editor {
     std::optional<glm::dvec2> pointer;  ///< canvas pixels; empty while it is elsewhere
     std::optional<Gesture> gesture;
     Nudge nudge;
-    bool show_probes = true, show_mesh = false;
+    bool show_probes = true, show_mesh = false, show_folds = false;
     ShownWeights shown_weights = ShownWeights::none;
     bool shown_by_brush = false;  ///< they go when the brush is put down
     bool iso_lines = false;

@@ -219,9 +219,9 @@ Deformation shape_of(const Deformation& deformation, const Document& document) {
 
 /// False where it was given up: then nothing was written.
 bool write_obj(const Deformation& shape, const fs::path& path, const Job& job) {
-    const std::string text = encode_obj(shape.source, shape);
+    const ObjContents contents = obj_contents(path, shape);
     if (job.given_up) return false;
-    write_file(path, std::as_bytes(std::span(text)));
+    write_obj(contents);
     return true;
 }
 
@@ -245,6 +245,13 @@ bool write_picture(const Deformation& shape, const PictureFile& file, const fs::
     return true;
 }
 
+std::string exported_sentence(const fs::path& path) {
+    if (!is_obj(path)) return fmt::format("Exported {}.", path.string());
+    const auto [material, texture] = obj_companions(path);
+    return fmt::format("Exported {}, and beside it {} and {}.", path.string(), material.filename().string(),
+                       texture.filename().string());
+}
+
 }  // namespace
 
 void export_to(App& app, const fs::path& path) {
@@ -256,7 +263,7 @@ void export_to(App& app, const fs::path& path) {
                   const bool written =
                       is_obj(path) ? write_obj(shape, path, job) : write_picture(shape, file, path, job);
                   if (!written) return {};
-                  return [path](App& a) { say(a, Tone::done, fmt::format("Exported {}.", path.string())); };
+                  return [path](App& a) { say(a, Tone::done, exported_sentence(path)); };
               });
 }
 

@@ -35,7 +35,7 @@ struct Shown {
     unsigned long mesh_version = 0, version = 0;
     CanvasView view;
     glm::ivec2 size{0};
-    bool mesh = false, light = false;
+    bool mesh = false, folds = false, light = false;
     bool still = false;  ///< the picture stands still under a stroke
     bool bound = false;  ///< with its mesh, rather than as it is while that is being made
     OverlayKey overlay;
@@ -94,6 +94,8 @@ struct App {
     std::vector<std::unique_ptr<DeformJob>> abandoned_jobs;  ///< given up, and not yet at their end
     std::shared_ptr<const Binding> last_binding;  ///< whatever document it is of: the next one starts from it
     std::optional<DeformFailure> failure;         ///< why the weights could not be worked out
+    std::optional<std::size_t> folds;             ///< folded triangles; empty where nobody has counted them
+    unsigned long folds_version = 0;              ///< of the deformation that they are of
     std::optional<MeshPoint> under;               ///< of the deformed mesh under the pointer
     std::vector<double> shares;                   ///< #probes: there; empty beside the picture
 

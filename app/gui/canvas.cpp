@@ -11,6 +11,7 @@
 #include "editor/tools.h"
 #include "gui/app.h"
 #include "gui/widgets.h"
+#include "model/folds.h"
 
 namespace probewarp {
 
@@ -26,6 +27,7 @@ Shown wanted(const App& app, glm::ivec2 size) {
     wanted.view = editor.view;
     wanted.size = size;
     wanted.mesh = editor.show_mesh;
+    wanted.folds = editor.show_folds;
     wanted.light = app.theme.is_light;
     wanted.still = shown_positions(editor).data() != editor.deformation.now.data();
     // Another picture's mesh is no way to show this one: until its binding is there it is shown as it is.
@@ -72,7 +74,8 @@ void draw_shown(App& app, const Shown& before) {
                                before.still != now.still || !before.compared.empty() || !before.pose.empty();
     const WeightsKey weights = weights_key(editor.deformation);
     drop_outdated_weights(app, weights);
-    if (now.bound && new_mesh) renderer.set_mesh(editor.deformation.binding->mesh);
+    if (now.bound && new_mesh)
+        renderer.set_mesh(editor.deformation.binding->mesh, editor.deformation.binding->still);
     if (!now.bound)
         renderer.set_positions({}, false);
     else if (!now.pose.empty())
@@ -89,8 +92,9 @@ void draw_shown(App& app, const Shown& before) {
     view.height = now.size.y;
     const auto draw = [&](int first_column) {
         renderer.draw(view, 1, true, first_column, Fineness::seen);
-        app.shown_texture = renderer.display(view, display_colours(app.theme), double(app.px(12)),
-                                             now.bound && now.mesh, first_column);
+        const ShownMesh mesh{now.bound && now.mesh, now.bound && now.folds ? double(app.px(7)) : 0};
+        app.shown_texture =
+            renderer.display(view, display_colours(app.theme), double(app.px(12)), mesh, first_column);
     };
     draw(0);
     if (now.compared.empty()) return;
@@ -98,8 +102,23 @@ void draw_shown(App& app, const Shown& before) {
     draw(now.divider);
 }
 
+/// Counts the folded triangles of the pose that is shown. Those of a large mesh are not counted while it
+/// changes with each frame, nor where the graphics card alone knows where they are.
+void count_folds(App& app) {
+    constexpr std::size_t quickly_counted = 1 << 17;  // triangles: far below a millisecond
+    const Deformation& deformation = app.editor.deformation;
+    if (deformation.binding && app.folds_version == deformation.version) return;
+    app.folds.reset();  // those of another document too
+    if (!deformation.binding) return;
+    const bool waits = app.editor.gesture && mesh_of(deformation).triangles.size() / 3 > quickly_counted;
+    if (waits || is_shaded(app)) return;
+    app.folds = deformation.moved ? folded_triangles(mesh_of(deformation), deformation.now) : 0;
+    app.folds_version = deformation.version;
+}
+
 void update_texture(App& app, glm::ivec2 size) {
     update_deformation(app);
+    count_folds(app);
     if (app.uploaded != app.editor.document.picture) return prepare_picture(app, app.editor.document.picture);
     Shown now = wanted(app, size);
     if (app.shown == now) return;

@@ -189,10 +189,31 @@ std::string facts(const App& app) {
                     grouped(editor.deformation.now.size()), deform_facts(app), app.renderer_label);
     if (app.deform_job && ImGui::GetTime() - app.deform_job->since > 0.1)
         text = "working out the weights… · " + text;
-    // Nobody counts what the shader could not blend.
-    if (editor.deformation.cancelled > 0 && !is_shaded(app))
-        text = fmt::format("no blend at {} vertices · {}", grouped(editor.deformation.cancelled), text);
     return text;
+}
+
+/// "285 folded · 2 cancelled"; empty where the deformation is sound, or the shader's, which nobody counts.
+std::string deformation_warning(const App& app) {
+    if (!has_picture(app.editor) || is_shaded(app)) return {};
+    const std::size_t folded = app.folds.value_or(0), cancelled = app.editor.deformation.cancelled;
+    std::string text = folded > 0 ? fmt::format("{} folded", grouped(folded)) : "";
+    if (cancelled > 0) text += fmt::format("{}{} cancelled", text.empty() ? "" : " · ", grouped(cancelled));
+    return text;
+}
+
+/// What that means; it ends at `right`.
+void draw_warning(const App& app, float right, float top, float height) {
+    const std::string text = deformation_warning(app);
+    if (text.empty()) return;
+    const float left = std::round(right - ImGui::CalcTextSize(text.c_str()).x);
+    ImGui::GetWindowDrawList()->AddText({left, std::round(top + (height - ImGui::GetFontSize()) / 2)},
+                                        app.theme.warning, text.c_str());
+    ImGui::SetCursorScreenPos({left, top});
+    ImGui::InvisibleButton("##warning", {right - left, height});
+    tooltip(
+        "Folded: triangles that lie turned over, so that the picture covers itself. View, Show folded\n"
+        "triangles marks them. Cancelled: vertices for which the blend has no answer, so that they follow\n"
+        "their heaviest probe.");
 }
 
 /// The image pixel under the pointer and the colour of the picture there.
@@ -239,6 +260,9 @@ void draw_status_bar(App& app) {
     ImGui::SetCursorScreenPos({left, top});
     ImGui::InvisibleButton("##facts", {display.x - app.px(16) - left, height});
     if (has_picture(app.editor)) tooltip(deform_explanation(app).c_str());
+    ImGui::PushFont(app.fonts.small);
+    draw_warning(app, left - app.px(16), top, height);
+    ImGui::PopFont();
     ImGui::End();
 }
 

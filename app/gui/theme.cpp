@@ -14,16 +14,16 @@ glm::vec3 to_vec3(ImU32 colour) {
 }  // namespace
 
 const Theme& dark_theme() {
-    static constexpr Theme theme{false,         rgb(0x17191d), rgb(0x212429), rgb(0x2b2f36),
-                                 rgb(0x343942), rgb(0xdfe3ea), rgb(0x8d95a3), rgb(0x5aa9ff),
-                                 rgb(0x0c1420), rgb(0x2a2d33), rgb(0x24272c), rgb(0x0d0f12)};
+    static constexpr Theme theme{false,         rgb(0x17191d), rgb(0x212429), rgb(0x2b2f36), rgb(0x343942),
+                                 rgb(0xdfe3ea), rgb(0x8d95a3), rgb(0x5aa9ff), rgb(0x0c1420), rgb(0x2a2d33),
+                                 rgb(0x24272c), rgb(0x0d0f12), rgb(0xff9d5c)};
     return theme;
 }
 
 const Theme& light_theme() {
-    static constexpr Theme theme{true,          rgb(0xf4f5f7), rgb(0xffffff), rgb(0xe9ebef),
-                                 rgb(0xd5d9e0), rgb(0x1d2128), rgb(0x667080), rgb(0x0b6bcb),
-                                 rgb(0xffffff), rgb(0xffffff), rgb(0xe9ebef), rgb(0x1d2128)};
+    static constexpr Theme theme{true,          rgb(0xf4f5f7), rgb(0xffffff), rgb(0xe9ebef), rgb(0xd5d9e0),
+                                 rgb(0x1d2128), rgb(0x667080), rgb(0x0b6bcb), rgb(0xffffff), rgb(0xffffff),
+                                 rgb(0xe9ebef), rgb(0x1d2128), rgb(0xa84400)};
     return theme;
 }
 

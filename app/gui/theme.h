@@ -10,7 +10,8 @@ namespace probewarp {
 
 struct Theme {
     bool is_light = false;
-    ImU32 canvas, panel, raised, line, text, muted, accent, on_accent, check_light, check_dark, label;
+    ImU32 canvas, panel, raised, line, text, muted, accent, on_accent, check_light, check_dark, label,
+        warning;
 };
 
 const Theme& dark_theme();

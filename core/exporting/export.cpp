@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "model/error.h"
 
@@ -19,13 +21,15 @@ struct Box {
     glm::dvec2 least, most;  ///< image pixels
 };
 
-/// The whole pixels that hold the deformed mesh.
+/// The whole pixels that hold the deformed mesh and what stays under it.
 Box bounds(const Deformation& deformation) {
     glm::dvec2 least(deformation.now.front()), most(least);
-    for (const glm::vec2 vertex : deformation.now) {
-        least = {std::min(least.x, double(vertex.x)), std::min(least.y, double(vertex.y))};
-        most = {std::max(most.x, double(vertex.x)), std::max(most.y, double(vertex.y))};
-    }
+    for (const std::span<const glm::vec2> points :
+         {std::span(deformation.now), std::span(deformation.binding->still.corners)})
+        for (const glm::vec2 point : points) {
+            least = {std::min(least.x, double(point.x)), std::min(least.y, double(point.y))};
+            most = {std::max(most.x, double(point.x)), std::max(most.y, double(point.y))};
+        }
     // A vertex that rounding put a hair beyond a pixel's edge does not add a pixel.
     constexpr double hair = 1.0 / 512;
     return {{std::floor(least.x + hair), std::floor(least.y + hair)},
@@ -99,6 +103,15 @@ Image blank(const Image& like, int rows) {
 
 }  // namespace
 
+std::optional<std::array<std::int32_t, 2>> exported_offset(const View& view, const Description& original) {
+    const auto at = original.offset.value_or(std::array<std::int32_t, 2>{});
+    const std::array offset{std::round((at[0] + view.origin.x) * view.scale.x),
+                            std::round((at[1] + view.origin.y) * view.scale.y)};
+    constexpr double furthest = std::numeric_limits<std::int32_t>::max();
+    if (std::abs(offset[0]) > furthest || std::abs(offset[1]) > furthest) return {};
+    return std::array{std::int32_t(offset[0]), std::int32_t(offset[1])};
+}
+
 FileStyle file_style(const ExportSettings& settings) {
     assert(settings.samples >= 1 && settings.samples <= max_samples);
     return {settings.samples, settings.background, settings.overlay};
@@ -113,6 +126,9 @@ ExportJob::ExportJob(PictureDrawer& drawer, const Deformation& deformation, cons
     like_.width = view.width;
     like_.height = view.height;
     like_.description = original.description;
+    const auto offset = exported_offset(view, original.description);
+    const bool is_said = original.description.offset || offset != std::array<std::int32_t, 2>{};
+    like_.description.offset = is_said ? offset : std::nullopt;
     if (original.bits() == 16) like_.rgba = std::vector<std::uint16_t>();
 }
 

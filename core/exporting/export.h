@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 
 #include "model/deformation.h"
@@ -11,7 +12,7 @@ namespace probewarp {
 
 enum class Canvas {
     image,  ///< the picture's own rectangle: what moved out of it is cut off
-    fit,    ///< grows or shrinks to the pixels that hold all of the deformed picture
+    fit,    ///< grows or shrinks to the pixels that hold all of the deformed picture, and what stays under it
 };
 
 inline constexpr int max_samples = 16;
@@ -29,6 +30,10 @@ struct ExportSettings {
 /// What the export of a deformed document shows. Throws Error where it would be larger than a picture may be.
 View export_view(const Deformation& deformation, const ExportSettings& settings);
 
+/// Where the export's top-left corner lies on the canvas on which the original says that it lies, or else
+/// from the picture's own corner: exported pixels. Empty where that is further off than a file can say.
+std::optional<std::array<std::int32_t, 2>> exported_offset(const View& view, const Description& original);
+
 FileStyle file_style(const ExportSettings& settings);
 
 /// One export under way, in bands of whole rows.
@@ -40,7 +45,8 @@ class ExportJob {
 
     bool done() const { return next_row_ == like_.height; }
     double progress() const { return double(next_row_) / like_.height; }
-    /// What is exported: its size, and the original's depth, colour profile and resolution; no pixels.
+    /// What is exported: its size, and the original's depth and description, but for the offset: that is
+    /// exported_offset, which an original without one gets only where it is not 0, 0. No pixels.
     const Image& like() const { return like_; }
     /// Whether any pixel may be less than opaque, as far as can be told without drawing.
     bool may_be_transparent() const { return may_be_transparent_; }

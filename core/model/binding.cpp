@@ -60,6 +60,8 @@ std::shared_ptr<const Binding> make_binding(const Document& document,
     const bool keep_cells = before && same_grid(before->source, document);
     const bool keep_mesh = keep_cells && same_rests(before->source, document);
     binding->kept = keep_cells ? before->kept : visible_cells(document.picture->image, document.mesh);
+    binding->still =
+        keep_cells ? before->still : still_cells(document.picture->image, document.mesh, binding->kept);
     binding->mesh = keep_mesh ? before->mesh : mesh_for(document, binding->kept);
     binding->islands = keep_mesh ? before->islands : islands_of(*binding->mesh);
     if (keep_cells) binding->cache = before->cache;
@@ -86,6 +88,7 @@ std::shared_ptr<const Binding> carried_over(const std::shared_ptr<const Binding>
         return nullptr;
     auto other = std::make_shared<Binding>(*binding);
     other->source = document;
+    other->still = still_cells(now, document.mesh, other->kept);
     return other;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/document.h"
+#include "model/still_cells.h"
 
 namespace probewarp {
 
@@ -20,6 +21,7 @@ struct Binding {
     Document source;                     ///< what it was worked out from
     std::vector<std::uint8_t> kept;      ///< the picture's visible_cells, to be used again
     std::shared_ptr<WeightCache> cache;  ///< likewise
+    StillCells still;                    ///< of the picture: what stays under the mesh
 };
 
 /// Whether two documents are bound by the same means: the same picture, mesh settings and scheme. What may

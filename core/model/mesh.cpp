@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "model/cells_near.h"
+
 namespace probewarp {
 
 std::array<int, 2> grid_size(int width, int height, int cells) {
@@ -16,14 +18,6 @@ std::array<int, 2> grid_size(int width, int height, int cells) {
 }
 
 namespace {
-
-/// The cells [first, last] along one side that come within `margin` pixels of pixel `at`: one that only
-/// touches does not. Multiplied before divided, so that whole quotients are exact.
-std::array<int, 2> cells_near(int at, double margin, int cells, int size) {
-    const int first = int(std::floor((at - margin) * cells / size));
-    const int last = int(std::ceil((at + 1 + margin) * cells / size)) - 1;
-    return {std::clamp(first, 0, cells - 1), std::clamp(last, 0, cells - 1)};
-}
 
 template <class Sample>
 void mark_visible(const std::vector<Sample>& rgba, const Image& image, const MeshSettings& settings,

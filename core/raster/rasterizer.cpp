@@ -9,6 +9,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <type_traits>
 
@@ -81,6 +82,7 @@ Rasterizer::Rasterizer(const Deformation& deformation, const View& view, const F
     const Image& image = picture_.image;
     if (deformation.moved) {
         mesh_ = {mesh_of(deformation).rest, deformation.now, mesh_of(deformation).triangles};
+        if (const StillCells& still = deformation.binding->still; !still.triangles.empty()) lay_over(still);
     } else {  // all of the picture as it is, with the cells that the mesh leaves out
         static constexpr std::array<std::uint32_t, 6> two_triangles{0, 1, 2, 2, 1, 3};
         const float right = float(image.width), bottom = float(image.height);
@@ -90,6 +92,18 @@ Rasterizer::Rasterizer(const Deformation& deformation, const View& view, const F
     bins_ = bin_triangles(mesh_, samples_view_, bin_rows_ * style.samples);
     images_ = room_for_levels(image, wanted_levels(mesh_, samples_view_));
     if (!picture_.arriving) fetch(image.height);
+}
+
+/// Puts what stays under the mesh that moves.
+void Rasterizer::lay_over(const StillCells& still) {
+    rest_ = now_ = still.corners;
+    triangles_ = still.triangles;
+    rest_.insert(rest_.end(), mesh_.rest.begin(), mesh_.rest.end());
+    now_.insert(now_.end(), mesh_.now.begin(), mesh_.now.end());
+    const auto first = std::uint32_t(still.corners.size());
+    std::ranges::transform(mesh_.triangles, std::back_inserter(triangles_),
+                           [first](std::uint32_t corner) { return first + corner; });
+    mesh_ = {rest_, now_, triangles_};
 }
 
 /// Waits for so many of the picture's rows, and works out what of the mipmaps follows from them.

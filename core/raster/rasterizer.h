@@ -25,6 +25,7 @@ class Rasterizer final : public PictureDrawer {
     void draw_rows(int first_row, Image& band) override;
 
   private:
+    void lay_over(const StillCells& still);
     void fetch(int picture_rows);
     int rows_shown(const Rows& rows) const;
     template <class Sample>
@@ -36,7 +37,9 @@ class Rasterizer final : public PictureDrawer {
     View samples_view_;  ///< of the samples
     FileStyle style_;
     bool opaque_;
-    std::array<glm::vec2, 4> corners_;  ///< of the picture
+    std::array<glm::vec2, 4> corners_;      ///< of the picture
+    std::vector<glm::vec2> rest_, now_;     ///< of what stays and the mesh over it, where something stays
+    std::vector<std::uint32_t> triangles_;  ///< likewise
     DeformedMesh mesh_;
     std::vector<Image> images_;  ///< the mipmaps, and the picture where it is one pixel wide or high
     std::vector<Level> levels_;

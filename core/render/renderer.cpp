@@ -45,6 +45,16 @@ void begin(const Target& target, int first_column = 0) {
     glActiveTexture(GL_TEXTURE0);
 }
 
+/// Has the bound array take the corners both as where they rest and as where they are.
+void set_still_points(const GlBuffer& corners, std::span<const glm::vec2> points) {
+    glBindBuffer(GL_ARRAY_BUFFER, corners.name());
+    glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(points.size_bytes()), points.data(), GL_STATIC_DRAW);
+    for (const GLuint location : {0u, 1u}) {
+        glVertexAttribPointer(location, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+        glEnableVertexAttribArray(location);
+    }
+}
+
 }  // namespace
 
 void clear_window(int width, int height, glm::vec3 colour) {
@@ -61,25 +71,31 @@ Renderer::Renderer()
       resolve_program_([] { return make_program(shaders::screen_vert, shaders::resolve_frag); }),
       display_program_([] { return make_program(shaders::screen_vert, shaders::display_frag); }),
       lines_program_([] { return make_program(shaders::mesh_vert, shaders::lines_frag); }),
+      folds_program_([] { return make_program(shaders::mesh_vert, shaders::folds_frag); }),
       picture_array_(make_vertex_array()),
       empty_array_(make_vertex_array()),
-      picture_corners_(make_buffer()) {}
+      still_array_(make_vertex_array()),
+      picture_corners_(make_buffer()),
+      still_corners_(make_buffer()),
+      still_triangles_(make_buffer()) {}
 
 void Renderer::set_picture(PictureTexture picture) {
     picture_ = std::move(picture);
     const float right = float(picture_.width), bottom = float(picture_.height);
     const std::array<glm::vec2, 4> corners{{{0, 0}, {right, 0}, {0, bottom}, {right, bottom}}};
     glBindVertexArray(picture_array_.name());
-    glBindBuffer(GL_ARRAY_BUFFER, picture_corners_.name());
-    glBufferData(GL_ARRAY_BUFFER, sizeof corners, corners.data(), GL_STATIC_DRAW);
-    for (const GLuint location : {0u, 1u}) {
-        glVertexAttribPointer(location, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
-        glEnableVertexAttribArray(location);
-    }
+    set_still_points(picture_corners_, corners);
 }
 
-void Renderer::set_mesh(std::shared_ptr<const Mesh> mesh) {
+void Renderer::set_mesh(std::shared_ptr<const Mesh> mesh, const StillCells& still) {
     mesh_.set_mesh(std::move(mesh));
+    glBindVertexArray(still_array_.name());
+    set_still_points(still_corners_, still.corners);
+    const auto indices = std::span(still.triangles);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, still_triangles_.name());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(indices.size_bytes()), indices.data(), GL_STATIC_DRAW);
+    check_gl("uploading what stays");
+    still_count_ = GLsizei(indices.size());
     moved_ = false;
     overlay_style_.reset();
 }
@@ -135,12 +151,17 @@ void Renderer::draw(const View& view, int samples, bool with_overlay, int first_
     begin(layer_, first_column * samples);
     const GLfloat nothing[4]{};
     glClearBufferfv(GL_COLOR, 0, nothing);
-    use_mesh_program(view, samples, with_overlay);
     glBindTexture(GL_TEXTURE_2D, picture_.texture.name());
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    if (moved_ || with_overlay)
+    const bool meshed = moved_ || with_overlay;
+    if (meshed && still_count_ > 0) {
+        use_mesh_program(view, samples, false);
+        draw_still();
+    }
+    use_mesh_program(view, samples, with_overlay);
+    if (meshed)
         mesh_.draw(view, fineness, with_overlay ? largest_side / 2 : largest_side);
     else
         draw_picture();
@@ -151,6 +172,11 @@ void Renderer::draw(const View& view, int samples, bool with_overlay, int first_
 void Renderer::draw_picture() {
     glBindVertexArray(picture_array_.name());
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+void Renderer::draw_still() {
+    glBindVertexArray(still_array_.name());
+    glDrawElements(GL_TRIANGLES, still_count_, GL_UNSIGNED_INT, nullptr);
 }
 
 void Renderer::read_back(Image& image, int left, int top, const View& view, int samples,
@@ -192,8 +218,8 @@ void Renderer::read_integers(Image& image, int left, int top, const View& view) 
     check_gl("reading the picture back");
 }
 
-GLuint Renderer::display(const View& view, const DisplayColours& colours, double square, bool lines,
-                         int first_column) {
+GLuint Renderer::display(const View& view, const DisplayColours& colours, double square,
+                         const ShownMesh& mesh, int first_column) {
     resize(shown_, view.width, view.height, GL_RGBA8);
     begin(shown_, first_column);
     const GlProgram& program = display_program_.get();
@@ -209,7 +235,8 @@ GLuint Renderer::display(const View& view, const DisplayColours& colours, double
     glBindTexture(GL_TEXTURE_2D, layer_.texture.name());
     glBindVertexArray(empty_array_.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    if (lines) draw_lines(view, colours.lines);
+    if (mesh.lines) draw_lines(view, colours.lines);
+    if (mesh.hatching > 0 && moved_) draw_folds(view, mesh.hatching);
     check_gl("showing the picture");
     glDisable(GL_SCISSOR_TEST);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -226,6 +253,19 @@ void Renderer::draw_lines(const View& view, glm::vec4 colour) {
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     mesh_.draw_lines(view, largest_side);
     glDisable(GL_BLEND);
+}
+
+/// The driver tells which way round the corners go, wherever they were moved by.
+void Renderer::draw_folds(const View& view, double hatching) {
+    const GlProgram& program = folds_program_.get();
+    glUseProgram(program.name());
+    set_view(program, view, 1);
+    set(program, "period", float(hatching));
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);  // at rest, y down, the corners go round clockwise as the driver sees them
+    glFrontFace(GL_CCW);
+    mesh_.draw(view, Fineness::seen, largest_side);
+    glDisable(GL_CULL_FACE);
 }
 
 }  // namespace probewarp

@@ -14,6 +14,7 @@
 #include "model/image.h"
 #include "model/mesh.h"
 #include "model/probe.h"
+#include "model/still_cells.h"
 #include "raster/picture_drawer.h"
 #include "render/drawn_mesh.h"
 #include "render/gl_objects.h"
@@ -27,6 +28,12 @@ void clear_window(int width, int height, glm::vec3 colour);
 struct DisplayColours {
     glm::vec3 canvas, light, dark;  ///< beside the picture, and the two of the checkerboard; 0 to 1
     glm::vec4 lines;                ///< of the mesh, straight alpha
+};
+
+/// What of the mesh is shown over the picture.
+struct ShownMesh {
+    bool lines = false;
+    double hatching = 0;  ///< of the folded triangles: target pixels from line to line; 0: they are not shown
 };
 
 /// What the overlay shows at a vertex.
@@ -54,7 +61,8 @@ class Renderer {
     void set_picture(PictureTexture picture);
     /// Whether the picture is, everywhere.
     bool is_opaque() const { return picture_.opaque; }
-    void set_mesh(std::shared_ptr<const Mesh> mesh);
+    /// still: what is drawn under the mesh where this is drawn, and never moves
+    void set_mesh(std::shared_ptr<const Mesh> mesh, const StillCells& still = {});
     /// The mesh as the processor deformed it. now: #vertices of the mesh, image pixels. Where it has not
     /// `moved`, all of the picture is drawn as it is, with the cells that the mesh leaves out.
     void set_positions(std::span<const glm::vec2> now, bool moved);
@@ -79,9 +87,9 @@ class Renderer {
                    std::optional<Colour> background);
 
     /// Shows what draw drew with one sample a pixel: over a checkerboard of squares of `square` pixels inside
-    /// the image's frame, dimmed beside it; with the mesh's lines where asked. first_column: as draw's.
-    /// Returns the texture that holds it.
-    GLuint display(const View& view, const DisplayColours& colours, double square, bool lines,
+    /// the image's frame, dimmed beside it; with the mesh's lines and its folded triangles where asked.
+    /// first_column: as draw's. Returns the texture that holds it.
+    GLuint display(const View& view, const DisplayColours& colours, double square, const ShownMesh& mesh = {},
                    int first_column = 0);
 
     /// Bytes of the mesh that were handed to the driver so far: for tests.
@@ -93,13 +101,17 @@ class Renderer {
     void set_view(const GlProgram& program, const View& view, int samples) const;
     void use_mesh_program(const View& view, int samples, bool with_overlay);
     void draw_picture();
+    void draw_still();
     void resolve(const View& view, bool deep, int samples, std::optional<Colour> background);
     void read_integers(Image& image, int left, int top, const View& view);
     void draw_lines(const View& view, glm::vec4 colour);
+    void draw_folds(const View& view, double hatching);
 
-    LazyProgram mesh_program_, mesh_overlay_program_, resolve_program_, display_program_, lines_program_;
-    GlVertexArray picture_array_, empty_array_;
-    GlBuffer picture_corners_;
+    LazyProgram mesh_program_, mesh_overlay_program_, resolve_program_, display_program_, lines_program_,
+        folds_program_;
+    GlVertexArray picture_array_, empty_array_, still_array_;
+    GlBuffer picture_corners_, still_corners_, still_triangles_;
+    GLsizei still_count_ = 0;  ///< indices
     DrawnMesh mesh_;
     bool moved_ = false;
     std::optional<OverlayStyle> overlay_style_;  ///< set where there is an overlay

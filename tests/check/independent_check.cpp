@@ -151,6 +151,7 @@ double worst_vertex(const std::string& obj, int w, int h, int columns, int rows,
     for (std::string line; std::getline(in, line);) {
         double x = 0, y = 0, z = 0;
         if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) != 3) continue;
+        y = h - y;  // OBJ has y up
         if (seen >= std::size_t(columns + 1) * std::size_t(rows + 1)) {
             double nearest = 1e9;
             for (const Handle& p : probes) nearest = std::min(nearest, std::hypot(x - p.x, y - p.y));

@@ -118,7 +118,10 @@ class WindowTest(unittest.TestCase):
         exported = self.export(desk, "three.png")
         self.assertEqual(exported.read_bytes(), self.render(project, desk.home / "same.png"))
         mesh = self.export(desk, "three.obj")
-        self.assertEqual(mesh.read_bytes(), self.render(project, desk.home / "same.obj"))
+        (desk.home / "same").mkdir()
+        self.assertEqual(mesh.read_bytes(), self.render(project, desk.home / "same" / "three.obj"))
+        for companion in "three.mtl", "three-texture.png":
+            self.assertEqual((desk.home / companion).read_bytes(), (desk.home / "same" / companion).read_bytes())
         desk.key("ctrl+z")
         desk.wait_title("● three.probewarp – Probewarp")
         again = self.export(desk, "fewer.png")

@@ -1,4 +1,4 @@
-// The driver's drawing in parts gives what drawing all of it gives.
+// The driver's drawing in parts gives what drawing all of it gives; an export says where it lies.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,6 +33,41 @@ TEST(Tiles, DoNotShow) {
         EXPECT_LE(others, 4u * 8);
         EXPECT_LE(double(steps), double(a.size()) / 128);
     }
+}
+
+using Offset = std::optional<std::array<std::int32_t, 2>>;
+
+/// What is written about an export's place, where the picture itself lies at `original`.
+Offset offset_of(const View& view, Offset original) {
+    Document document;
+    Picture picture = *noise<std::uint8_t>(6, 4);
+    picture.image.description.offset = original;
+    document.picture = std::make_shared<const Picture>(std::move(picture));
+    Deformation deformation;
+    update(deformation, document);
+    Rasterizer drawer(deformation, view, {});
+    return ExportJob(drawer, deformation, view, {}).like().description.offset;
+}
+
+TEST(Offset, IsThatOfTheCanvasOnThePicture) {
+    EXPECT_EQ(offset_of({{0, 0}, {1, 1}, 6, 4}, {}), Offset());
+    EXPECT_EQ(offset_of({{-3, 5}, {1, 1}, 6, 4}, {}), (Offset{{-3, 5}}));
+    EXPECT_EQ(offset_of({{-3, 5}, {2, 0.5}, 6, 4}, {}), (Offset{{-6, 3}}));  // exported pixels
+    EXPECT_EQ(offset_of({{0.2, -0.2}, {1, 1}, 6, 4}, {}), Offset());
+}
+
+TEST(Offset, AddsToThatOfTheOriginal) {
+    EXPECT_EQ(offset_of({{0, 0}, {1, 1}, 6, 4}, {{10, -20}}), (Offset{{10, -20}}));
+    EXPECT_EQ(offset_of({{-3, 5}, {2, 2}, 6, 4}, {{10, -20}}), (Offset{{14, -30}}));
+    EXPECT_EQ(offset_of({{-10, 20}, {2, 2}, 6, 4}, {{10, -20}}), (Offset{{0, 0}}));
+    EXPECT_EQ(offset_of({{0, 0}, {1, 1}, 6, 4}, {{0, 0}}), (Offset{{0, 0}}));
+}
+
+TEST(Offset, IsLeftOutWhereNoFileCanSayIt) {
+    EXPECT_EQ(offset_of({{0, 0}, {2, 2}, 6, 4}, {{2147483647, 0}}), Offset());
+    EXPECT_EQ(offset_of({{0, 0}, {1, 1}, 6, 4}, {{2147483647, -2147483647}}),
+              (Offset{{2147483647, -2147483647}}));
+    EXPECT_EQ(offset_of({{1e300, 0}, {1, 1}, 6, 4}, {}), Offset());
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ struct Scene {
     explicit Scene(const Document& of) : document(of) {
         update(deformation, document);
         renderer.set_picture(upload_picture(document.picture->image));
-        renderer.set_mesh(deformation.binding->mesh);
+        renderer.set_mesh(deformation.binding->mesh, deformation.binding->still);
         renderer.set_positions(deformation.now, deformation.moved);
     }
 
