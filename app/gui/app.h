@@ -100,7 +100,7 @@ struct App {
     Jobs jobs;
     std::vector<Message> messages;
     std::vector<std::pair<ImVec2, ImVec2>> overlays;  ///< what lies over the canvas in this frame
-    ImRect dialog_box;                                ///< where a dialog lies in this frame; empty: none
+    ImRect dialog_box;                                ///< where dialogs lie in this frame; empty: none
     FileDialog file_dialog;
     ExportDialog export_dialog;
     LevelsDialog levels_dialog;

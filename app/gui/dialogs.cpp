@@ -32,7 +32,7 @@ bool begin_dialog(App& app, const char* title, float width, ImGuiWindowFlags mor
     ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
     ImGui::SetNextWindowSizeConstraints({wide, 0}, {wide, display.y - app.px(24)});
     if (!ImGui::BeginPopupModal(title, nullptr, dialog_flags | more)) return false;
-    app.dialog_box = ImGui::GetCurrentWindow()->Rect();
+    keep_messages_off(app);
     return true;
 }
 

@@ -75,6 +75,7 @@ void go_to(FileDialog& dialog, const fs::path& folder) {
         dialog.name = {};
     else
         dialog.name.put(dialog.name.meant().filename());
+    dialog.focus_wanted = true;
     list_folder(dialog);
 }
 
@@ -222,7 +223,7 @@ void draw_name_field(App& app) {
     if (ImGui::IsItemEdited()) dialog.trouble.clear();
     if (!entered) return;
     accept(app, false);
-    dialog.focus_wanted = dialog.open && !app.doubt;
+    dialog.focus_wanted = dialog.focus_wanted || (dialog.open && !app.doubt);
 }
 
 /// The sentence at the lower left: what is the matter, or what would be replaced.
@@ -297,7 +298,7 @@ void draw_file_dialog(App& app) {
             id.c_str(), nullptr,
             ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings))
         return;
-    app.dialog_box = {ImGui::GetWindowPos(), ImGui::GetWindowSize()};
+    keep_messages_off(app);
     draw_folder_row(app);
     const float list_height = ImGui::GetContentRegionAvail().y - app.px(92);
     draw_places(app, app.px(130), list_height);

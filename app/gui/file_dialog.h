@@ -23,9 +23,9 @@ enum class FileUse {
 
 /// Clicks of the left button that belong together: each soon after the one before it, at the same place.
 struct ClickChain {
-    double last = -1;          ///< seconds of ImGui's clock; negative: there was none
-    ImVec2 place{0, 0};        ///< of the last, window pixels
-    int listing = 0;           ///< FileDialog::listing at the first
+    double last = -1;            ///< seconds of ImGui's clock; negative: there was none
+    ImVec2 place{0, 0};          ///< of the last, window pixels
+    int listing = 0;             ///< FileDialog::listing at the first
     std::filesystem::path on{};  ///< what the last but one was on; empty at the first
 };
 

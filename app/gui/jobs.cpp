@@ -120,7 +120,7 @@ void draw_progress(App& app) {
     ImGui::Begin("##progress", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_AlwaysAutoResize);
-    app.dialog_box = ImGui::GetCurrentWindow()->Rect();
+    keep_messages_off(app);
     draw_wrapped(app, job.title, 2);
     // Where nobody knows how far it is the bar goes to and fro.
     const float to_and_fro = float(0.5 + 0.5 * std::sin(ImGui::GetTime() * 3)), progress = job.progress;

@@ -31,7 +31,8 @@ Area area_of(const App& app) {
     const float gap = app.px(8), margin = app.px(16);
     const float panel = has_picture(app.editor) ? app.px(look::panel) : 0;
     const float width = std::min(app.px(340), display.x - panel - app.px(look::tools) - margin);
-    const float right = display.x - panel - gap, bottom = display.y - app.px(look::status) - gap;
+    const float hint = has_picture(app.editor) ? app.px(32) : 0;  // at the canvas's lower edge
+    const float right = display.x - panel - gap, bottom = display.y - app.px(look::status) - hint - gap;
     Area area{{right - width, app.px(look::menu) + gap}, {right, bottom}};
     const ImRect& dialog = app.dialog_box;
     if (dialog.GetWidth() <= 0 || !area.Overlaps(dialog)) return area;
@@ -124,6 +125,14 @@ void say(App& app, Tone tone, std::string text) {
     std::erase_if(app.messages, [&](const Message& m) { return m.text == text; });
     app.messages.push_back({std::move(text), tone, ImGui::GetTime(), ++numbers});
     app.wake();
+}
+
+void keep_messages_off(App& app) {
+    const ImRect box = ImGui::GetCurrentWindow()->Rect();
+    if (app.dialog_box.GetWidth() > 0)
+        app.dialog_box.Add(box);
+    else
+        app.dialog_box = box;
 }
 
 bool close_error(App& app) {

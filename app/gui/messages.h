@@ -25,6 +25,9 @@ void say(App& app, Tone tone, std::string text);
 /// lowest, as many as there is room for; and forgets those that have been there long enough.
 void draw_messages(App& app);
 
+/// Within a dialog's window: messages of this frame stand aside of it.
+void keep_messages_off(App& app);
+
 /// Closes the newest error. Returns whether there was one.
 bool close_error(App& app);
 

@@ -55,9 +55,11 @@ float draw_menus(App& app) {
     std::string_view open_menu;
     bool shown = false;
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {app.px(10), app.px(8)});
-    // Where the window is narrow the menus move together, so that the name has room.
-    const bool narrow = ImGui::GetIO().DisplaySize.x < app.px(800);
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {app.px(narrow ? 6 : 18), app.px(9)});
+    // Where the window is narrow the menus move together, so that the name has room; where it is low their
+    // rows do, so that the longest menu has room below the bar.
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const bool narrow = display.x < app.px(800), low = display.y < app.px(600);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {app.px(narrow ? 6 : 18), app.px(low ? 5 : 9)});
     for (const Command& command : commands()) {
         if (command.menu != open_menu) {
             if (shown) ImGui::EndMenu();
