@@ -48,6 +48,7 @@ void draw_name(App& app, Probe& probe, ImVec2 at, float room, bool chosen) {
     if (first) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputText(
         "##rename", &app.new_name, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    app.glyphs.ask(app.new_name);
     if (!entered && !ImGui::IsItemDeactivated()) return;
     app.renaming = 0;
     if (app.new_name.empty() || app.new_name.size() > 200 || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE)) return;

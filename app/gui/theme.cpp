@@ -111,7 +111,7 @@ void apply_theme(const Theme& theme, float scale) {
     style.GrabMinSize = 14;
     style.WindowBorderSize = style.PopupBorderSize = 1;
     style.FrameBorderSize = 0;
-    style.DisabledAlpha = 0.75f;  // what is disabled keeps 3 : 1 at least, in muted ink too
+    style.DisabledAlpha = disabled_opacity;
     style.WindowMenuButtonPosition = ImGuiDir_None;
     style.ScaleAllSizes(scale);
 

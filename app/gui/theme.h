@@ -32,6 +32,9 @@ DisplayColours display_colours(const Theme& theme);
 /// Hands the theme to ImGui, every size multiplied by `scale`.
 void apply_theme(const Theme& theme, float scale);
 
+/// Of what is disabled: even muted ink keeps 3 : 1 on a panel.
+inline constexpr float disabled_opacity = 0.75f;
+
 /// Of two opaque colours, by WCAG 2.1: from 1 to 21. Text needs 4.5 on what it stands on.
 double contrast(ImU32 one, ImU32 other);
 
