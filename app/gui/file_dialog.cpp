@@ -153,6 +153,7 @@ void click_entry(App& app, std::size_t at) {
     FileDialog& dialog = app.file_dialog;
     const FileDialog::Entry entry = dialog.entries[at];
     bool twice = false;
+    dialog.focus_wanted = true;  // so that Return takes what is picked, and what is typed goes on
     if (!count_click(app, entry.path, twice)) return;
     if (entry.is_folder) return go_to(dialog, entry.path);
     dialog.name.put_name(entry.path);
