@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 
 #include "gui/app.h"
 #include "io/file.h"
 #include "io/image_file.h"
 #include "io/obj.h"
+#include "io/printable.h"
 #include "io/probes_csv.h"
 #include "io/project.h"
 
@@ -25,35 +27,99 @@ std::vector<std::string> picture_endings() {
     return endings;
 }
 
-/// Where a dialog begins: beside the project, or at home.
+/// Whether the path is one of the files, by whatever name.
+bool leads_to_any(const fs::path& path, const std::vector<fs::path>& files) {
+    return std::any_of(files.begin(), files.end(), [&](const fs::path& file) {
+        std::error_code ignored;
+        return fs::equivalent(path, file, ignored);
+    });
+}
+
+bool is_sample(const fs::path& path) { return path.parent_path() == samples_folder(); }
+
+/// Where a dialog begins: beside the project or the picture, else where a file was last chosen, else at home.
 fs::path usual_folder(const App& app) {
     if (!app.editor.path.empty()) return app.editor.path.parent_path();
+    // Beside a sample nobody wants to save.
+    if (!app.pictures_read.empty() && !is_sample(app.pictures_read.back()))
+        return app.pictures_read.back().parent_path();
+    if (!app.last_folder.empty()) return app.last_folder;
     const char* home = std::getenv("HOME");
     return home ? home : "/";
 }
 
-void open_now(App& app, const fs::path& path) {
+bool is_project_path(const fs::path& path) {
+    std::string ending = path.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return ending == project_extension;
+}
+
+/// Ends a job in which a file turned out to be damaged at its end: asks whether to open what is there of it.
+std::function<void(App&)> offer_salvage(const fs::path& path, const std::string& what,
+                                        std::function<void(App&)> salvage) {
+    return [path, what, salvage = std::move(salvage)](App& app) {
+        app.questions.push_back(
+            {fmt::format("{} is not whole", path.filename().string()),
+             fmt::format("{}. What is there of it can be opened: what is missing is clear or black. The file "
+                         "itself stays as it is.",
+                         what),
+             {{"Open what is there", salvage}, {"Cancel", {}}},
+             1});
+    };
+}
+
+/// What became of the files that were dropped with one; `beginning`: "Opened a.png; ".
+void say_others(App& app, const std::string& beginning, std::size_t others) {
+    if (others == 0) return;
+    say(app, Tone::hint,
+        fmt::format("{}{} not opened: Probewarp opens one at a time.", beginning,
+                    others == 1 ? std::string("1 other was") : fmt::format("{} others were", others)));
+}
+
+/// Takes the document that was read from `whole`, unless the driver cannot show it.
+void begin_with(App& app, Document& document, const fs::path& whole) {
+    try {
+        check_texture_size(document.picture->image);
+    } catch (const Error& error) {
+        return say(app, Tone::error, fmt::format("{}: {}", whole.string(), error.what()));
+    }
+    // A sample is saved under another name, never over the one that came with the program.
+    const bool own = is_project_path(whole) && !is_sample(whole);
+    start(app.editor, std::move(document), own ? whole : fs::path(), true);
+    app.pictures_read = own ? std::vector<fs::path>() : std::vector{whole};
+    app.export_dialog.path = {};
+}
+
+void open_now(App& app, const fs::path& path, std::size_t others = 0, DecodeOptions options = {}) {
     start_job(app, fmt::format("Opening {}", path.filename().string()), JobKind::reading,
-              [path](Job&) -> std::function<void(App&)> {
-                  auto document = std::make_shared<Document>(read_document(path));
-                  std::error_code ignored;
-                  const fs::path whole = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
-                  return [document, whole](App& a) {
-                      try {
-                          check_texture_size(document->picture->image);
-                      } catch (const Error& error) {
-                          return say(a, Tone::error, fmt::format("{}: {}", whole.string(), error.what()));
-                      }
-                      const bool project = whole.extension() == project_extension;
-                      // A sample is saved under another name, never over the one that came with the program.
-                      const bool sample = whole.parent_path() == samples_folder();
-                      start(a.editor, std::move(*document), project && !sample ? whole : fs::path(), true);
-                      a.export_dialog.path.clear();
-                  };
+              [path, others, options](Job&) -> std::function<void(App&)> {
+                  try {
+                      auto document = std::make_shared<Document>(read_document(path, Pixels::whole, options));
+                      std::error_code ignored;
+                      const fs::path whole = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+                      return [document, whole, others](App& a) {
+                          begin_with(a, *document, whole);
+                          say_others(a, fmt::format("Opened {}; ", whole.filename().string()), others);
+                      };
+                  } catch (const IncompleteFile& error) {
+                      return offer_salvage(path, error.what(), [path, others](App& a) {
+                          open_now(a, path, others, {.salvage = true});
+                      });
+                  } catch (const Error& error) {
+                      return [what = std::string(error.what()), others](App& a) {
+                          say(a, Tone::error, what);
+                          say_others(a, "", others);
+                      };
+                  }
               });
 }
 
 void save_to(App& app, fs::path path, std::function<void(App&)> then) {
+    if (leads_to_any(path, app.pictures_read))
+        return say(app, Tone::error,
+                   fmt::format("{} was not saved: it is the file that is open here. Choose another name.",
+                               path.filename().string()));
     for (const auto& job : app.jobs.running)
         if (job->kind == JobKind::writing && !job->given_up)
             return say(app, Tone::hint, "The last file is still being written.");
@@ -82,9 +148,10 @@ void save_to(App& app, fs::path path, std::function<void(App&)> then) {
 void save_as(App& app, std::function<void(App&)> then = {}) {
     fs::path proposed = app.editor.path;
     if (proposed.empty())
-        proposed = usual_folder(app) /
-                   fs::path(app.editor.document.picture->name).replace_extension(project_extension);
-    ask_for_file(app, "Save the project", "Save", true, {project_extension}, proposed,
+        proposed =
+            usual_folder(app) /
+            fitting_name(fs::path(app.editor.document.picture->name).stem().string(), project_extension);
+    ask_for_file(app, "Save the project", "Save", FileUse::save, {project_extension}, proposed,
                  [then = std::move(then)](App& a, const fs::path& path) { save_to(a, path, then); });
 }
 
@@ -98,42 +165,55 @@ void save(App& app, std::function<void(App&)> then = {}) {
 void open_dialog(App& app) {
     std::vector<std::string> endings = picture_endings();
     endings.emplace_back(project_extension);
-    ask_for_file(app, "Open a picture or a project", "Open", false, endings, usual_folder(app),
+    ask_for_file(app, "Open a picture or a project", "Open", FileUse::open, endings, usual_folder(app),
                  [](App& a, const fs::path& path) { open_now(a, path); });
 }
 
 void new_document(App& app) {
     start(app.editor, {}, {}, true);
-    app.export_dialog.path.clear();
+    app.pictures_read.clear();
+    app.export_dialog.path = {};
+}
+
+/// Puts the picture that was read from `path` under the probes.
+void take_picture(App& app, const std::shared_ptr<const Picture>& picture, const fs::path& path) {
+    Document document = app.editor.document;
+    replace_picture(document, picture);
+    try {
+        check_texture_size(picture->image);
+        check_size(document);
+    } catch (const Error& error) {
+        return say(app, Tone::error, fmt::format("{}: {}", path.string(), error.what()));
+    }
+    app.editor.axis.reset();  // it was the other picture's
+    app.editor.document = std::move(document);
+    commit(app.editor, "Replace picture");
+    app.editor.fit_wanted = true;
+    app.pictures_read.push_back(path);
+}
+
+void replace_now(App& app, const fs::path& path, DecodeOptions options = {}) {
+    start_job(app, fmt::format("Opening {}", path.filename().string()), JobKind::reading,
+              [path, options](Job&) -> std::function<void(App&)> {
+                  try {
+                      auto picture =
+                          std::make_shared<const Picture>(read_picture(path, Pixels::whole, options));
+                      return [picture, path](App& a) { take_picture(a, picture, path); };
+                  } catch (const IncompleteFile& error) {
+                      return offer_salvage(path, error.what(),
+                                           [path](App& a) { replace_now(a, path, {.salvage = true}); });
+                  }
+              });
 }
 
 void replace_picture_dialog(App& app) {
-    ask_for_file(app, "Put another picture under the probes", "Replace", false, picture_endings(),
-                 usual_folder(app), [](App& app_now, const fs::path& path) {
-                     start_job(app_now, fmt::format("Opening {}", path.filename().string()), JobKind::reading,
-                               [path](Job&) -> std::function<void(App&)> {
-                                   auto picture = std::make_shared<const Picture>(read_picture(path));
-                                   return [picture](App& a) {
-                                       Document document = a.editor.document;
-                                       replace_picture(document, picture);
-                                       try {
-                                           check_texture_size(picture->image);
-                                           check_size(document);
-                                       } catch (const Error& error) {
-                                           return say(a, Tone::error, error.what());
-                                       }
-                                       a.editor.axis.reset();  // it was the other picture's
-                                       a.editor.document = std::move(document);
-                                       commit(a.editor, "Replace picture");
-                                       a.editor.fit_wanted = true;
-                                   };
-                               });
-                 });
+    ask_for_file(app, "Put another picture under the probes", "Use", FileUse::open, picture_endings(),
+                 usual_folder(app), [](App& a, const fs::path& path) { replace_now(a, path); });
 }
 
 void import_probes_dialog(App& app) {
     ask_for_file(
-        app, "Import the probes of a CSV file", "Import", false, {".csv", ".txt"}, usual_folder(app),
+        app, "Import the probes of a CSV file", "Import", FileUse::open, {".csv", ".txt"}, usual_folder(app),
         [](App& a, const fs::path& path) {
             try {
                 const auto bytes = read_file(path);
@@ -155,11 +235,10 @@ void import_probes_dialog(App& app) {
 void export_dialog(App& app) {
     ExportDialog& dialog = app.export_dialog;
     dialog.open = true;
-    dialog.overwrite_asked = false;
-    if (dialog.path.empty()) {
-        const fs::path name = fs::path(document_name(app)).stem();
-        dialog.path = (usual_folder(app) / (name.string() + "-deformed.png")).string();
-    }
+    if (!dialog.path.text.empty()) return;
+    const fs::path name =
+        app.editor.path.empty() ? fs::path(app.editor.document.picture->name).stem() : app.editor.path.stem();
+    dialog.path.put(usual_folder(app) / fitting_name(name.string(), "-deformed.png"));
 }
 
 void switch_theme(App& app) {
@@ -170,8 +249,12 @@ void switch_theme(App& app) {
 }  // namespace
 
 std::string document_name(const App& app) {
-    if (!app.editor.path.empty()) return app.editor.path.filename().string();
-    return has_picture(app.editor) ? app.editor.document.picture->name : "";
+    if (!app.editor.path.empty()) return printable(app.editor.path.filename().native());
+    return has_picture(app.editor) ? printable(app.editor.document.picture->name) : "";
+}
+
+bool is_being_read(const App& app, const fs::path& path) {
+    return leads_to_any(path, {app.editor.path}) || leads_to_any(path, app.pictures_read);
 }
 
 void end_gesture(App& app) {
@@ -188,21 +271,32 @@ void after_saving(App& app, const char* what, std::function<void(App&)> then) {
     app.questions.push_back(
         {"Unsaved changes",
          fmt::format("{} has changes that are not saved. Save them before {}?", document_name(app), what),
-         {{"Save", [then](App& a) { save(a, then); }}, {"Throw away", then}, {"Cancel", {}}}});
+         {{"Save", [then](App& a) { save(a, then); }}, {"Throw away", then}, {"Cancel", {}}},
+         2});
     app.wake();
 }
 
-void open_path(App& app, const fs::path& path) {
-    after_saving(app, "opening another", [path](App& a) { open_now(a, path); });
+void open_path(App& app, const fs::path& path, std::size_t others) {
+    after_saving(app, "opening another", [path, others](App& a) { open_now(a, path, others); });
+}
+
+void open_dropped(App& app, std::span<const char* const> dropped) {
+    if (dropped.empty()) return;
+    const auto path = dropped_path(dropped.front());
+    const std::string name = path ? path->filename().string() : dropped.front();
+    if (app.modal)
+        return say(app, Tone::hint, fmt::format("{} was not opened: answer the dialog first.", name));
+    if (!path)
+        return say(app, Tone::error,
+                   fmt::format("{} was not opened: it is on no disk here. Save it as a file first.", name));
+    app.last_folder = path->parent_path();
+    open_path(app, *path, dropped.size() - 1);
 }
 
 bool is_obj(const fs::path& path) { return path.extension() == ".obj" || path.extension() == ".OBJ"; }
 
 fs::path export_path(const App& app) {
-    const std::string& typed = app.export_dialog.path;
-    const char* home = std::getenv("HOME");
-    if (home && typed.starts_with("~/")) return fs::path(home) / typed.substr(2);
-    return usual_folder(app) / typed;
+    return usual_folder(app) / without_tilde(app.export_dialog.path.meant().native());
 }
 
 namespace {

@@ -3,9 +3,12 @@
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,8 +55,7 @@ struct ExportDialog {
     bool transparent = true;
     float background[3] = {1, 1, 1};
     EncodeOptions encode;  ///< the quality of JPEG, the compression of PNG
-    std::string path;
-    bool overwrite_asked = false;  ///< the path exists and the person was told so
+    PathField path;
 };
 
 /// The dialog that asks for levels.
@@ -69,7 +71,9 @@ struct Question {
         std::string label;
         std::function<void(App&)> then;  ///< may be empty
     };
-    std::vector<Answer> answers;  ///< the first is the blue one, the last is what Escape means
+    std::vector<Answer> answers;  ///< the first is the blue one, which Return means
+    std::size_t escape = 0;       ///< which answer Escape means
+    std::size_t focused = 0;      ///< which answer the keyboard is at
 };
 
 struct App {
@@ -79,7 +83,9 @@ struct App {
     std::string renderer_label;
     Theme theme = dark_theme();
     Fonts fonts;
-    float scale = 1;
+    Glyphs glyphs;            ///< of the fonts, beside the usual ones
+    float display_scale = 1;  ///< what the display or the person wants
+    float scale = 1;          ///< what the window has room for of it
     Input input;
     NumberEdit number;
     glm::dvec2 cursor{0};         ///< window pixels: at the last event
@@ -104,12 +110,16 @@ struct App {
     Trouble trouble;        ///< what went wrong and is not said yet
     int failed_frames = 0;  ///< one after the other; from the second on they come without the picture
     std::vector<std::pair<ImVec2, ImVec2>> overlays;  ///< what lies over the canvas in this frame
+    ImRect dialog_box;                                ///< where dialogs lie in this frame; empty: none
     FileDialog file_dialog;
     ExportDialog export_dialog;
     LevelsDialog levels_dialog;
     std::vector<Question> questions;  ///< asked one after the other
+    std::optional<Question> doubt;    ///< asked over the dialog that is open, before that goes on
     bool about_open = false;
     Samples samples;
+    std::vector<std::filesystem::path> pictures_read;  ///< files of the document's pictures, the newest last
+    std::filesystem::path last_folder;                 ///< where a dialog last chose a file; empty: nowhere
     bool modal = false;  ///< a dialog is open: the canvas and the shortcuts rest
     bool probes_open = true, probe_open = true, brush_open = true, deformation_open = true,
          weights_open = true, limits_open = false;

@@ -202,15 +202,13 @@ struct ProbePainter {
 };
 
 void draw_label(const App& app, ImDrawList* list, ImVec2 at, const std::string& text, ImU32 ink,
-                float opacity, float rounding) {
+                float rounding) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const ImVec2 pad{app.px(12), app.px(5)};
     list->AddRectFilled(at, {at.x + size.x + 2 * pad.x, at.y + size.y + 2 * pad.y},
-                        IM_COL32(0x0d, 0x0f, 0x12, int(255 * opacity)), rounding);
+                        faded(on_picture::night, on_picture::label_opacity), rounding);
     list->AddText({at.x + pad.x, at.y + pad.y}, ink, text.c_str());
 }
-
-constexpr ImU32 bright = IM_COL32(0xdf, 0xe3, 0xea, 255), calm = IM_COL32(0xa4, 0xab, 0xb7, 255);
 
 std::string signed_number(double value) {
     return fmt::format("{}{:.0f}", std::round(value) < 0 ? "−" : "+", std::abs(value));
@@ -228,7 +226,7 @@ void draw_gesture_label(const App& app, const ProbePainter& painter) {
                                                signed_number(way.y), probe->angle * 180 / std::numbers::pi);
     const ImVec2 middle = painter.at(to_canvas(editor.view, probe->now));
     draw_label(app, painter.list, {std::round(middle.x + app.px(32)), std::round(middle.y - app.px(74))},
-               text, bright, 0.88f, app.px(6));
+               text, on_picture::text, app.px(6));
 }
 
 /// The brush's circle about the pointer, with the part that a dab covers wholly, and what is mirrored.
@@ -263,7 +261,7 @@ void draw_brush(const App& app, const ProbePainter& painter) {
                         app.px(1));
     if (sized)
         draw_label(app, list, {middle.x + app.px(16), middle.y - app.px(40)},
-                   fmt::format("{:.0f} px", editor.brush.radius), bright, 0.88f, app.px(6));
+                   fmt::format("{:.0f} px", editor.brush.radius), on_picture::text, app.px(6));
 }
 
 /// The name of a blend at the top of the canvas, ending at the divider or beginning there.
@@ -272,7 +270,7 @@ void draw_blend_name(const App& app, ImDrawList* list, float x, float top, std::
     const std::string text(find_blend_method(blend)->label);
     const float width = ImGui::CalcTextSize(text.c_str()).x;
     const float left = ends ? x - width - app.px(36) : x + app.px(24);  // a label has a margin of its own
-    draw_label(app, list, {std::round(left), top + app.px(12)}, text, bright, 0.75f, app.px(6));
+    draw_label(app, list, {std::round(left), top + app.px(12)}, text, on_picture::text, app.px(6));
 }
 
 /// The line between two blends, a grip to take hold of it, and their names.
@@ -302,8 +300,8 @@ void draw_hint(const App& app, ImDrawList* list, float left, float bottom, float
     ImGui::PushFont(app.fonts.small);
     const float text_width = ImGui::CalcTextSize(text.c_str()).x + app.px(24);
     if (text_width <= width && !app.editor.gesture)
-        draw_label(app, list, {std::round(left + (width - text_width) / 2), bottom - app.px(32)}, text, calm,
-                   0.6f, app.px(12));
+        draw_label(app, list, {std::round(left + (width - text_width) / 2), bottom - app.px(32)}, text,
+                   on_picture::hint, app.px(12));
     ImGui::PopFont();
 }
 

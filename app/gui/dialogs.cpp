@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "editor/paint_commands.h"
 #include "gui/actions.h"
 #include "gui/app.h"
+#include "gui/shown_text.h"
 #include "gui/widgets.h"
 #include "io/image_file.h"
 
@@ -22,12 +25,16 @@ constexpr ImGuiWindowFlags dialog_flags = ImGuiWindowFlags_NoResize | ImGuiWindo
                                           ImGuiWindowFlags_NoSavedSettings |
                                           ImGuiWindowFlags_AlwaysAutoResize;
 
-bool begin_dialog(const App& app, const char* title, float width) {
+/// As wide as that, or as the window has room for; what is too high for it scrolls.
+bool begin_dialog(App& app, const char* title, float width, ImGuiWindowFlags more = 0) {
     if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float wide = std::min(app.px(width), display.x - app.px(24));
     ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize({app.px(width), 0});
-    return ImGui::BeginPopupModal(title, nullptr, dialog_flags);
+    ImGui::SetNextWindowSizeConstraints({wide, 0}, {wide, display.y - app.px(24)});
+    if (!ImGui::BeginPopupModal(title, nullptr, dialog_flags | more)) return false;
+    keep_messages_off(app);
+    return true;
 }
 
 bool escape_pressed() { return ImGui::IsKeyPressed(GLFW_KEY_ESCAPE) && !ImGui::IsAnyItemActive(); }
@@ -44,10 +51,13 @@ std::string export_trouble(const App& app) {
     const std::filesystem::path path = export_path(app);
     const ImageFormat* format = image_format_of(path);
     if (auto reason = why_not_deformed(app); !reason.empty()) return reason;
+    if (!has_stem(path)) return "The file needs a name before its ending.";
     if (!is_obj(path) && (!format || !format->encode))
         return "The name must end with .png, .jpg, .bmp, .tga or .obj.";
     std::error_code ignored;
     if (!std::filesystem::is_directory(path.parent_path(), ignored)) return "There is no such folder.";
+    if (std::filesystem::is_directory(path, ignored)) return "This is a folder.";
+    if (is_being_read(app, path)) return "This is the file that is open here: choose another name.";
     try {
         export_view(app.editor.deformation, dialog.settings);
     } catch (const Error& error) {
@@ -57,14 +67,8 @@ std::string export_trouble(const App& app) {
 }
 
 void begin_export(App& app) {
-    ExportDialog& dialog = app.export_dialog;
-    std::error_code ignored;
-    if (std::filesystem::exists(export_path(app), ignored) && !dialog.overwrite_asked) {
-        dialog.overwrite_asked = true;
-        return;
-    }
-    dialog.open = false;
-    ImGui::CloseCurrentPopup();
+    app.export_dialog.open = false;
+    app.last_folder = export_path(app).parent_path();
     export_to(app, export_path(app));
 }
 
@@ -146,84 +150,172 @@ void draw_export_settings(App& app) {
 
 }  // namespace
 
+namespace {
+
+/// Which answer the keys mean; none where there is no such key. Arrows and Tab go from answer to answer.
+std::optional<std::size_t> answer_by_key(Question& question) {
+    const std::size_t count = question.answers.size();
+    const bool back = ImGui::IsKeyPressed(GLFW_KEY_TAB) && ImGui::GetIO().KeyShift;
+    // The first stands at the right.
+    if (ImGui::IsKeyPressed(GLFW_KEY_RIGHT) || back)
+        question.focused = (question.focused + count - 1) % count;
+    if (ImGui::IsKeyPressed(GLFW_KEY_LEFT) || (ImGui::IsKeyPressed(GLFW_KEY_TAB) && !back))
+        question.focused = (question.focused + 1) % count;
+    if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) return question.escape;
+    for (const int key : {GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER, GLFW_KEY_SPACE})
+        if (ImGui::IsKeyPressed(key, false)) return question.focused;
+    return {};
+}
+
+float button_width(const App& app, const std::string& label) {
+    return std::max(app.px(88), ImGui::CalcTextSize(label.c_str()).x + app.px(28));
+}
+
+/// The answers' buttons: the usual one at the right, the others apart at the left.
+std::optional<std::size_t> draw_answers(App& app, const Question& question) {
+    std::optional<std::size_t> clicked;
+    const auto draw = [&](std::size_t i) {
+        const std::string& label = question.answers[i].label;
+        const ImVec2 size{button_width(app, label), app.px(30)};
+        if (i == 0 ? accent_button(app, label.c_str(), size) : ImGui::Button(label.c_str(), size))
+            clicked = i;
+        if (i != question.focused || (i == 0 && question.focused == 0)) return;
+        const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+        const float out = app.px(3);
+        ImGui::GetWindowDrawList()->AddRect({from.x - out, from.y - out}, {to.x + out, to.y + out},
+                                            app.theme.accent, app.px(7), 0, app.px(1.5));
+    };
+    for (std::size_t i = 1; i < question.answers.size(); ++i) {
+        draw(i);
+        ImGui::SameLine();
+    }
+    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - button_width(app, question.answers[0].label));
+    draw(0);
+    return clicked;
+}
+
+/// Draws the question in a dialog of its own. The answer, once there is one.
+std::optional<std::size_t> draw_question(App& app, Question& question, const char* id) {
+    if (!begin_dialog(app, id, 424, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoNavInputs)) return {};
+    ImGui::PushFont(app.fonts.strong);
+    draw_wrapped(app, question.title, 2);
+    ImGui::PopFont();
+    ImGui::Dummy({0, app.px(2)});
+    draw_wrapped(app, question.text, 8);
+    ImGui::Dummy({0, app.px(10)});
+    // The key that led to the question is none of its answers.
+    const bool appearing = ImGui::IsWindowAppearing();
+    const auto by_key = appearing ? std::nullopt : answer_by_key(question);
+    const auto clicked = draw_answers(app, question);
+    const auto answer = clicked ? clicked : by_key;
+    if (answer) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+    return answer;
+}
+
+void give_answer(App& app, const Question& question, std::size_t answer) {
+    if (question.answers[answer].then) question.answers[answer].then(app);
+    app.wake();
+}
+
+}  // namespace
+
 void draw_questions(App& app) {
     if (app.questions.empty() || app.file_dialog.open || is_busy(app)) return;
+    const auto answer = draw_question(app, app.questions.front(), "##question");
+    if (!answer) return;
     const Question question = app.questions.front();
-    if (!begin_dialog(app, question.title.c_str(), 440)) return;
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(question.text.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::Dummy({0, app.px(8)});
-    std::size_t chosen = question.answers.size();
-    align_buttons(app, int(question.answers.size()), 108);
-    for (std::size_t i = question.answers.size(); i-- > 0;) {
-        const ImVec2 size{app.px(108), app.px(28)};
-        const char* label = question.answers[i].label.c_str();
-        if (i == 0 ? accent_button(app, label, size) : ImGui::Button(label, size)) chosen = i;
-        if (i > 0) ImGui::SameLine();
-    }
-    if (escape_pressed()) chosen = question.answers.size() - 1;
-    if (ImGui::IsKeyPressed(GLFW_KEY_ENTER, false)) chosen = 0;
-    if (chosen < question.answers.size()) {
-        ImGui::CloseCurrentPopup();
-        app.questions.erase(app.questions.begin());
-        if (question.answers[chosen].then) question.answers[chosen].then(app);
-        app.wake();
-    }
-    ImGui::EndPopup();
+    app.questions.erase(app.questions.begin());
+    give_answer(app, question, *answer);
 }
+
+void ask_before_replacing(App& app, const std::filesystem::path& path, std::function<void(App&)> then) {
+    app.doubt = Question{
+        fmt::format("Replace {}?", path.filename().string()),
+        fmt::format("A file of this name is there already: {}. It would be lost.", age_and_size(path)),
+        {{"Cancel", {}}, {"Replace", std::move(then)}}};
+    app.wake();
+}
+
+void draw_doubt(App& app) {
+    if (!app.doubt) return;
+    const auto answer = draw_question(app, *app.doubt, "##doubt");
+    if (!answer) return;
+    const Question question = *std::exchange(app.doubt, {});
+    give_answer(app, question, *answer);
+}
+
+namespace {
+
+void browse_for_export(App& app) {
+    ask_for_file(app, "Export to", "Choose", FileUse::name, {".png", ".jpg", ".jpeg", ".bmp", ".tga", ".obj"},
+                 export_path(app),
+                 [](App& a, const std::filesystem::path& path) { a.export_dialog.path.put(path); });
+}
+
+/// The path's row. Returns whether Return was pressed in it.
+bool draw_export_path(App& app, bool appearing) {
+    row_label(app, "File", 92);
+    if (appearing) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - app.px(96));
+    const bool entered =
+        ImGui::InputText("##path", &app.export_dialog.path.text,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    app.glyphs.ask(app.export_dialog.path.text);
+    tab_stop(app);
+    ImGui::SameLine();
+    if (ImGui::Button("Browse…", {app.px(88), 0})) {
+        ImGui::CloseCurrentPopup();
+        browse_for_export(app);
+    }
+    return entered;
+}
+
+/// Below the settings: what keeps the export from beginning, what it would replace, or what it will be.
+void draw_export_remark(App& app, const std::string& trouble, bool replaces) {
+    std::string remark = trouble;
+    const std::filesystem::path path = export_path(app);
+    if (remark.empty() && replaces)
+        remark = fmt::format("{} is there already: {}.", path.filename().string(), age_and_size(path));
+    if (remark.empty()) {
+        const View view = export_view(app.editor.deformation, app.export_dialog.settings);
+        remark = fmt::format("{} × {} pixels, {} bits a channel", view.width, view.height,
+                             app.editor.document.picture->image.bits());
+    }
+    ImGui::PushStyleColor(ImGuiCol_Text, replaces || !trouble.empty() ? app.theme.warning : app.theme.muted);
+    draw_wrapped(app, remark, 3);
+    ImGui::PopStyleColor();
+}
+
+}  // namespace
 
 void draw_export_dialog(App& app) {
     ExportDialog& dialog = app.export_dialog;
     if (!dialog.open || app.file_dialog.open) return;
     const bool appearing = !ImGui::IsPopupOpen("Export");
     if (!begin_dialog(app, "Export", 520)) return;
-    row_label(app, "File", 92);
-    if (appearing) ImGui::SetKeyboardFocusHere();
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - app.px(96));
-    const bool entered = ImGui::InputText(
-        "##path", &dialog.path, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-    if (ImGui::IsItemEdited()) dialog.overwrite_asked = false;
-    tab_stop(app);
-    ImGui::SameLine();
-    if (ImGui::Button("Browse…", {app.px(88), 0})) {
-        ImGui::CloseCurrentPopup();
-        ask_for_file(app, "Export to", "Choose", true, {".png", ".jpg", ".jpeg", ".bmp", ".tga", ".obj"},
-                     dialog.path, [](App& a, const std::filesystem::path& path) {
-                         a.export_dialog.path = path.string();
-                         std::error_code ignored;  // where it exists, the file dialog has asked
-                         a.export_dialog.overwrite_asked = std::filesystem::exists(path, ignored);
-                     });
-    }
+    const bool entered = draw_export_path(app, appearing);
     if (!is_obj(export_path(app))) draw_export_settings(app);
 
     const std::string trouble = export_trouble(app);
+    std::error_code ignored;
+    const bool replaces = trouble.empty() && std::filesystem::exists(export_path(app), ignored);
     ImGui::Dummy({0, app.px(2)});
-    ImGui::PushStyleColor(ImGuiCol_Text, app.theme.muted);
-    ImGui::PushTextWrapPos(0);
-    if (!trouble.empty())
-        ImGui::TextUnformatted(trouble.c_str());
-    else if (dialog.overwrite_asked)
-        ImGui::Text("This file exists and will be replaced. Press Export once more.");
-    else {
-        const View view = export_view(app.editor.deformation, dialog.settings);
-        ImGui::Text("%d × %d pixels, %d bits a channel", view.width, view.height,
-                    app.editor.document.picture->image.bits());
-    }
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
+    draw_export_remark(app, trouble, replaces);
     ImGui::Dummy({0, app.px(2)});
     align_buttons(app, 2, 108);
-    const bool cancelled =
-        ImGui::Button("Cancel", {app.px(108), app.px(28)}) || (!appearing && escape_pressed());
+    const bool escaped = !appearing && !app.doubt && escape_pressed();
+    if (ImGui::Button("Cancel", {app.px(108), app.px(28)}) || escaped) dialog.open = false;
     ImGui::SameLine();
-    if ((accent_button(app, "Export", {app.px(108), app.px(28)}, nullptr, trouble.empty()) || entered) &&
-        trouble.empty())
+    const char* action = replaces ? "Replace" : "Export";
+    const bool clicked =
+        accent_button(app, action, {app.px(108), app.px(28)}, nullptr, trouble.empty()) && trouble.empty();
+    if (clicked || (entered && trouble.empty() && !replaces))
         begin_export(app);
-    if (cancelled) {
-        dialog.open = false;
-        ImGui::CloseCurrentPopup();
-    }
+    else if (entered && replaces)
+        ask_before_replacing(app, export_path(app), &begin_export);
+    draw_doubt(app);
+    if (!dialog.open) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }
 
@@ -259,7 +351,7 @@ void draw_about(App& app) {
     ImGui::TextUnformatted(
         "Deforms pictures with probes, by dual number linear blending of anti-commutative dual "
         "complex numbers (Matsuda, Kaji, Ochiai, arXiv 1601.01754).");
-    ImGui::Text("Rendered by %s. MIT licence.", app.renderer_label.c_str());
+    ImGui::Text("Rendered by %s. MIT licence.", shown(app, app.renderer_label).c_str());
     ImGui::PopTextWrapPos();
     ImGui::Dummy({0, app.px(4)});
     align_buttons(app, 1, 108);

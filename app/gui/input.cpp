@@ -276,6 +276,7 @@ Outcome take_pressed_key(App& app, const InputEvent& event) {
     if (is_field_gesture(app) && !files) return Outcome::done;
     if (is_field_gesture(app)) end_gesture(app);
     app.number.last = 0;
+    if (shortcut.key == key_escape && !app.editor.gesture && close_error(app)) return Outcome::done;
     if (shortcut.key != 0) press_key(app.editor, shortcut, event.held);
     return Outcome::done;
 }

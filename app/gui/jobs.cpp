@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "gui/app.h"
+#include "gui/shown_text.h"
 #include "gui/widgets.h"
 #include "raster/mipmaps.h"
 
@@ -130,7 +131,8 @@ void draw_progress(App& app) {
     ImGui::Begin("##progress", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_AlwaysAutoResize);
-    ImGui::TextUnformatted(job.title.c_str());
+    keep_messages_off(app);
+    draw_wrapped(app, job.title, 2);
     // Where nobody knows how far it is the bar goes to and fro.
     const float to_and_fro = float(0.5 + 0.5 * std::sin(ImGui::GetTime() * 3)), progress = job.progress;
     ImGui::ProgressBar(progress < 0 ? to_and_fro : progress, {-1, app.px(6)}, "");

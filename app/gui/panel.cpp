@@ -15,6 +15,7 @@
 #include "gui/app.h"
 #include "gui/brush_panel.h"
 #include "gui/panels.h"
+#include "gui/shown_text.h"
 #include "gui/widgets.h"
 
 namespace probewarp {
@@ -35,12 +36,11 @@ void is_step(App& app, const std::string& label) {
 
 void edit_at_once(App& app, const std::string& label) { commit(app.editor, label); }
 
-void draw_name(App& app, Probe& probe, ImVec2 at, bool chosen) {
+/// `room`: for the name, pixels.
+void draw_name(App& app, Probe& probe, ImVec2 at, float room, bool chosen) {
     if (app.renaming != probe.id) {
         const float y = std::round(at.y + (app.px(look::field) - ImGui::GetFontSize()) / 2);
-        ImGui::GetWindowDrawList()->AddText(
-            {at.x + app.px(42), y}, chosen ? app.theme.text : mixed(app.theme.text, app.theme.muted, 0.25f),
-            probe.name.c_str());
+        draw_shown(app, {at.x + app.px(42), y}, room, chosen ? app.theme.text : app.theme.soft, probe.name);
         return;
     }
     ImGui::SetCursorScreenPos({at.x + app.px(36), at.y});
@@ -49,6 +49,7 @@ void draw_name(App& app, Probe& probe, ImVec2 at, bool chosen) {
     if (first) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputText(
         "##rename", &app.new_name, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    app.glyphs.ask(app.new_name);
     if (!entered && !ImGui::IsItemDeactivated()) return;
     app.renaming = 0;
     if (app.new_name.empty() || app.new_name.size() > 200 || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE)) return;
@@ -91,7 +92,7 @@ void draw_probe_row(App& app, Probe& probe) {
     if (chosen) list->AddRectFilled(at, {at.x + app.px(3), at.y + height}, app.theme.accent, app.px(1.5));
     list->AddCircleFilled({at.x + app.px(18), at.y + height / 2}, app.px(6),
                           to_u32(probe.colour, probe.visible ? 1 : 0.4f), 24);
-    draw_name(app, probe, at, chosen);
+    draw_name(app, probe, at, width - app.px(42 + (app.shares.empty() ? 66 : 100)), chosen);
     draw_share(app, probe, {at.x + width - app.px(68), at.y});
     ImGui::SetCursorScreenPos({at.x + width - app.px(62), at.y});
     ImGui::PushStyleVar(ImGuiStyleVar_Alpha,

@@ -3,12 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "editor/commands.h"
 #include "editor/tools.h"
 #include "gui/actions.h"
 #include "gui/app.h"
+#include "gui/shown_text.h"
 #include "gui/widgets.h"
 
 namespace probewarp {
@@ -46,11 +50,16 @@ void menu_item(App& app, const Command& command) {
     if (!why_not.empty()) tooltip(why_not.c_str());
 }
 
-void draw_menus(App& app) {
+/// Returns where they end, window pixels.
+float draw_menus(App& app) {
     std::string_view open_menu;
     bool shown = false;
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {app.px(10), app.px(8)});
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {app.px(18), app.px(9)});
+    // Where the window is narrow the menus move together, so that the name has room; where it is low their
+    // rows do, so that the longest menu has room below the bar.
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const bool narrow = display.x < app.px(800), low = display.y < app.px(600);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {app.px(narrow ? 6 : 18), app.px(low ? 5 : 9)});
     for (const Command& command : commands()) {
         if (command.menu != open_menu) {
             if (shown) ImGui::EndMenu();
@@ -62,18 +71,24 @@ void draw_menus(App& app) {
         if (shown) menu_item(app, command);
     }
     if (shown) ImGui::EndMenu();
+    const float end = ImGui::GetCursorScreenPos().x;
     ImGui::PopStyleVar(2);
+    return end;
 }
 
-void draw_title(App& app, float width) {
+/// In the middle of the window, or of what is free between `left` and `right`, shortened to that.
+void draw_title(App& app, float left, float right) {
     const std::string name = document_name(app);
-    if (name.empty()) return;
+    const float room = right - left;
+    if (name.empty() || room < app.px(48)) return;
     const bool saved = is_saved(app.editor.history) && !app.editor.gesture;
     const std::string title = saved ? name : "●  " + name;
-    const float text = ImGui::CalcTextSize(title.c_str()).x;
-    ImGui::GetWindowDrawList()->AddText(
-        {std::round((width - text) / 2), std::round((app.px(look::menu) - ImGui::GetFontSize()) / 2)},
-        app.theme.muted, title.c_str());
+    const float text = std::min(room, ImGui::CalcTextSize(title.c_str()).x);
+    const float middle = (ImGui::GetIO().DisplaySize.x - text) / 2;
+    draw_shown(app,
+               {std::round(std::clamp(middle, left, right - text)),
+                std::round((app.px(look::menu) - ImGui::GetFontSize()) / 2)},
+               text + 1, app.theme.muted, title);
 }
 
 }  // namespace
@@ -82,14 +97,15 @@ void draw_menu_bar(App& app) {
     const float width = ImGui::GetIO().DisplaySize.x, height = app.px(look::menu);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {app.px(8), (height - ImGui::GetFontSize()) / 2});
     begin_bar(app, "##menu", {0, 0}, {width, height}, ImGuiWindowFlags_MenuBar);
+    float menus_end = 0;
     if (ImGui::BeginMenuBar()) {
         ImGui::SetCursorPosX(app.px(8));
-        draw_menus(app);
+        menus_end = draw_menus(app);
         ImGui::EndMenuBar();
     }
     ImGui::PopStyleVar();
     ImGui::PushClipRect({0, 0}, {width, height}, false);
-    draw_title(app, width);
+    draw_title(app, menus_end + app.px(8), width - app.px(166 + 12));
     const float y = (height - app.px(26)) / 2;
     for (const auto& [label, symbol, x] :
          {std::tuple{"Undo", icon::undo, 166.0}, {"Redo", icon::redo, 136.0}}) {
@@ -180,18 +196,6 @@ std::string grouped(std::size_t number) {
     return digits;
 }
 
-std::string facts(const App& app) {
-    const Editor& editor = app.editor;
-    if (!has_picture(editor)) return app.renderer_label;
-    const Image& image = editor.document.picture->image;
-    std::string text =
-        fmt::format("{} × {} · {} vertices · {} · {}", image.width, image.height,
-                    grouped(editor.deformation.now.size()), deform_facts(app), app.renderer_label);
-    if (app.deform_job && ImGui::GetTime() - app.deform_job->since > 0.1)
-        text = "working out the weights… · " + text;
-    return text;
-}
-
 /// "285 folded · 2 cancelled"; empty where the deformation is sound, or the shader's, which nobody counts.
 std::string deformation_warning(const App& app) {
     if (!has_picture(app.editor) || is_shaded(app)) return {};
@@ -201,40 +205,116 @@ std::string deformation_warning(const App& app) {
     return text;
 }
 
-/// What that means; it ends at `right`.
-void draw_warning(const App& app, float right, float top, float height) {
-    const std::string text = deformation_warning(app);
-    if (text.empty()) return;
-    const float left = std::round(right - ImGui::CalcTextSize(text.c_str()).x);
-    ImGui::GetWindowDrawList()->AddText({left, std::round(top + (height - ImGui::GetFontSize()) / 2)},
-                                        app.theme.warning, text.c_str());
-    ImGui::SetCursorScreenPos({left, top});
-    ImGui::InvisibleButton("##warning", {right - left, height});
-    tooltip(
-        "Folded: triangles that lie turned over, so that the picture covers itself. View, Show folded\n"
-        "triangles marks them. Cancelled: vertices for which the blend has no answer, so that they follow\n"
-        "their heaviest probe.");
+constexpr const char* warning_explanation =
+    "Folded: triangles that lie turned over, so that the picture covers itself. View, Show folded\n"
+    "triangles marks them. Cancelled: vertices for which the blend has no answer, so that they follow\n"
+    "their heaviest probe.";
+
+/// A part of the status bar's right.
+struct Fact {
+    std::string text;
+    ImU32 ink;
+};
+
+/// From left to right: what one should not miss first. What there is no room for goes from the end.
+std::vector<Fact> facts(App& app) {
+    const Editor& editor = app.editor;
+    const ImU32 ink = app.theme.muted;
+    if (!has_picture(editor)) return {{shown(app, app.renderer_label), ink}};
+    std::vector<Fact> facts;
+    if (std::string warning = deformation_warning(app); !warning.empty())
+        facts.push_back({std::move(warning), app.theme.warning});
+    if (app.deform_job && ImGui::GetTime() - app.deform_job->since > 0.1)
+        facts.push_back({"working out the weights…", ink});
+    const Image& image = editor.document.picture->image;
+    facts.push_back({fmt::format("{} × {}", image.width, image.height), ink});
+    facts.push_back({fmt::format("{} vertices", grouped(editor.deformation.now.size())), ink});
+    facts.push_back({deform_facts(app), ink});
+    facts.push_back({shown(app, app.renderer_label), ink});
+    return facts;
+}
+
+constexpr const char* between_facts = " · ";
+
+float width_of(const std::vector<Fact>& facts) {
+    float width = 0;
+    for (const Fact& fact : facts)
+        width += ImGui::CalcTextSize(fact.text.c_str()).x +
+                 (&fact == facts.data() ? 0 : ImGui::CalcTextSize(between_facts).x);
+    return width;
+}
+
+/// Draws what fits between `left` and `right`, up to the right edge.
+void draw_facts(App& app, float left, float right, float y) {
+    std::vector<Fact> fitting = facts(app);
+    std::string all;
+    for (const Fact& fact : fitting) all += (all.empty() ? "" : between_facts) + fact.text;
+    while (fitting.size() > 1 && width_of(fitting) > right - left) fitting.pop_back();
+    float x = std::round(std::max(left, right - width_of(fitting)));
+    const float beginning = x;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    for (const Fact& fact : fitting) {
+        if (x > beginning) {
+            list->AddText({x, y}, app.theme.muted, between_facts);
+            x += ImGui::CalcTextSize(between_facts).x;
+        }
+        const std::string text = shortened(fact.text, right - x + 1, ImGui::GetFont());
+        list->AddText({x, y}, fact.ink, text.c_str());
+        x += ImGui::CalcTextSize(text.c_str()).x;
+    }
+    if (x <= beginning) return;
+    ImGui::SetCursorScreenPos({beginning, ImGui::GetWindowPos().y});
+    ImGui::InvisibleButton("##facts", {x - beginning, app.px(look::status)});
+    if (!has_picture(app.editor)) return;
+    if (!deformation_warning(app).empty()) all += fmt::format("\n{}", warning_explanation);
+    tooltip((all + "\n" + deform_explanation(app)).c_str());
+}
+
+/// How wide the place and the colour under the pointer get, so that nothing jumps when they change.
+struct PixelWidths {
+    float place, colour;
+};
+
+PixelWidths pixel_widths(const App& app) {
+    const Image& image = app.editor.document.picture->image;
+    const std::string place = fmt::format("−{0}, −{0} px", std::max(image.width, image.height));
+    const char* colour = image.bits() == 8 ? "255 255 255 255" : "65535 65535 65535 65535";
+    return {ImGui::CalcTextSize(place.c_str()).x + app.px(14),
+            ImGui::CalcTextSize(colour).x + app.px(18 + 14)};
 }
 
 /// The image pixel under the pointer and the colour of the picture there.
-void draw_pixel(App& app, float x, float y, ImDrawList* list) {
+void draw_pixel(App& app, float x, float y, const PixelWidths& widths) {
     const Editor& editor = app.editor;
     if (!editor.pointer) return;
     const glm::dvec2 point = to_image(editor.view, *editor.pointer);
-    const std::string place = fmt::format("{:.0f}, {:.0f} px", std::floor(point.x), std::floor(point.y));
-    list->AddText({x, y}, app.theme.muted, place.c_str());
+    draw_shown(app, {x, y}, widths.place - app.px(14), app.theme.muted,
+               fmt::format("{:.0f}, {:.0f} px", std::floor(point.x), std::floor(point.y)));
     if (!app.under) return;
     const glm::dvec2 rest = rest_point(mesh_of(editor.deformation), *app.under);
     const Image& image = editor.document.picture->image;
     const auto within = [](double v, int size) { return std::clamp(int(std::floor(v)), 0, size - 1); };
     const auto rgba = pixel(image, within(rest.x, image.width), within(rest.y, image.height));
     const int shift = image.bits() - 8;
-    x += app.px(96);
+    x += widths.place;
     const float middle = y + ImGui::GetFontSize() / 2;
+    ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled({x, middle - app.px(5.5)}, {x + app.px(11), middle + app.px(5.5)},
                         IM_COL32(rgba[0] >> shift, rgba[1] >> shift, rgba[2] >> shift, 255), app.px(2));
     const std::string values = fmt::format("{} {} {} {}", rgba[0], rgba[1], rgba[2], rgba[3]);
     list->AddText({x + app.px(18), y}, app.theme.muted, values.c_str());
+}
+
+/// The zoom and the pixel under the pointer. Returns where they may end.
+float draw_view_facts(App& app, float y) {
+    const float left = app.px(16);
+    if (!has_picture(app.editor)) return left;
+    const double percent = app.editor.view.zoom * 100;
+    ImGui::GetWindowDrawList()->AddText({left, y}, app.theme.text,
+                                        fmt::format("{:.{}f} %", percent, percent < 10 ? 1 : 0).c_str());
+    const PixelWidths widths = pixel_widths(app);
+    draw_pixel(app, left + app.px(60), y, widths);
+    return left + app.px(60) + widths.place + widths.colour;
 }
 
 }  // namespace
@@ -247,21 +327,7 @@ void draw_status_bar(App& app) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddLine({0, top}, {display.x, top}, app.theme.line);
     const float y = std::round(top + (height - ImGui::GetFontSize()) / 2);
-    if (has_picture(app.editor)) {
-        const double percent = app.editor.view.zoom * 100;
-        list->AddText({app.px(16), y}, app.theme.text,
-                      fmt::format("{:.{}f} %", percent, percent < 10 ? 1 : 0).c_str());
-        draw_pixel(app, app.px(76), y, list);
-    }
-    const std::string text = facts(app);
-    const float left = std::round(display.x - app.px(16) - ImGui::CalcTextSize(text.c_str()).x);
-    list->AddText({left, y}, app.theme.muted, text.c_str());
-    ImGui::PopFont();
-    ImGui::SetCursorScreenPos({left, top});
-    ImGui::InvisibleButton("##facts", {display.x - app.px(16) - left, height});
-    if (has_picture(app.editor)) tooltip(deform_explanation(app).c_str());
-    ImGui::PushFont(app.fonts.small);
-    draw_warning(app, left - app.px(16), top, height);
+    draw_facts(app, draw_view_facts(app, y), display.x - app.px(16), y);
     ImGui::PopFont();
     ImGui::End();
 }

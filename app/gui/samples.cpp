@@ -6,6 +6,7 @@
 #include "editor/commands.h"
 #include "gui/actions.h"
 #include "gui/app.h"
+#include "gui/shown_text.h"
 #include "gui/widgets.h"
 #include "io/project.h"
 #include "raster/mipmaps.h"
@@ -75,9 +76,9 @@ void draw_sample(App& app, const Sample& sample, ImVec2 from, ImVec2 size) {
         list->AddImage(reinterpret_cast<ImTextureID>(std::uintptr_t(sample.texture.name())),
                        {middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y});
     }
-    const ImVec2 text = ImGui::CalcTextSize(sample.title.c_str());
-    list->AddText({std::round(from.x + (size.x - text.x) / 2), to.y - app.px(27)}, app.theme.text,
-                  sample.title.c_str());
+    const float room = size.x - app.px(16), text = ImGui::CalcTextSize(sample.title.c_str()).x;
+    draw_shown(app, {std::round(from.x + (size.x - std::min(room, text)) / 2), to.y - app.px(27)}, room + 1,
+               app.theme.text, sample.title);
     ImGui::PopID();
     if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (clicked) open_path(app, sample.path);
@@ -97,6 +98,42 @@ std::filesystem::path samples_folder() {
     return {};
 }
 
+namespace {
+
+/// The samples' cards in rows, within `room` pixels: smaller where it is tight, then fewer.
+struct Cards {
+    ImVec2 size{0, 0};
+    float gap = 0;
+    int columns = 0, rows = 0;
+};
+
+Cards cards_within(const App& app, ImVec2 room, int count) {
+    Cards cards;
+    cards.gap = app.px(16);
+    for (float part = 1; part >= 0.45f; part -= 0.1f) {
+        cards.size = {std::round(app.px(168) * part), std::round(app.px(184) * part)};
+        cards.columns =
+            std::clamp(int((room.x + cards.gap) / (cards.size.x + cards.gap)), 1, std::max(1, count));
+        cards.rows = (count + cards.columns - 1) / cards.columns;
+        if (float(cards.rows) * (cards.size.y + cards.gap) - cards.gap <= room.y) return cards;
+    }
+    cards.rows = std::max(0, int((room.y + cards.gap) / (cards.size.y + cards.gap)));
+    return cards;
+}
+
+void draw_cards(App& app, const Cards& cards, float middle, float top) {
+    const int count = std::min(int(app.samples.list.size()), cards.rows * cards.columns);
+    for (int i = 0; i < count; ++i) {
+        const int row = i / cards.columns, in_row = std::min(cards.columns, count - row * cards.columns);
+        const float width = float(in_row) * (cards.size.x + cards.gap) - cards.gap;
+        const float x = middle - width / 2 + float(i % cards.columns) * (cards.size.x + cards.gap);
+        const float y = top + float(row) * (cards.size.y + cards.gap);
+        draw_sample(app, app.samples.list[std::size_t(i)], {std::round(x), std::round(y)}, cards.size);
+    }
+}
+
+}  // namespace
+
 void draw_empty_state(App& app, float left, float top, float width, float height) {
     // The window first; and what is being opened goes before thumbnails that may never be seen.
     if (!app.samples.begun && is_busy(app)) return;
@@ -106,9 +143,11 @@ void draw_empty_state(App& app, float left, float top, float width, float height
         ImGui::GetWindowDrawList()->AddText(font, font->FontSize,
                                             {std::round(left + (width - size.x) / 2), y}, colour, text);
     };
-    const ImVec2 card{app.px(168), app.px(184)};
-    const float gap = app.px(16), block = app.px(140) + card.y;
-    float y = top + std::max(0.0f, (height - block) / 2);
+    const float head = app.px(132);  // what stands above the cards
+    const Cards cards =
+        cards_within(app, {width - app.px(32), height - head - app.px(24)}, int(app.samples.list.size()));
+    const float block = head + float(cards.rows) * (cards.size.y + cards.gap);
+    float y = top + std::max(app.px(8), (height - block) / 2);
     centred(app.fonts.large, "Drop a picture here, or open one", app.theme.text, y);
     y += app.px(44);
     ImGui::SetCursorScreenPos({std::round(left + width / 2 - app.px(70)), y});
@@ -117,13 +156,7 @@ void draw_empty_state(App& app, float left, float top, float width, float height
     y += app.px(60);
     if (app.samples.list.empty()) return;
     centred(app.fonts.small, "or begin with a sample", app.theme.muted, y);
-    y += app.px(28);
-    const float count = float(app.samples.list.size());
-    float x = left + (width - count * card.x - (count - 1) * gap) / 2;
-    for (const Sample& sample : app.samples.list) {
-        draw_sample(app, sample, {std::round(x), std::round(y)}, card);
-        x += card.x + gap;
-    }
+    draw_cards(app, cards, left + width / 2, y + app.px(28));
 }
 
 }  // namespace probewarp

@@ -1,5 +1,8 @@
 #include "gui/theme.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace probewarp {
 
 namespace {
@@ -14,17 +17,63 @@ glm::vec3 to_vec3(ImU32 colour) {
 }  // namespace
 
 const Theme& dark_theme() {
-    static constexpr Theme theme{false,         rgb(0x17191d), rgb(0x212429), rgb(0x2b2f36), rgb(0x343942),
-                                 rgb(0xdfe3ea), rgb(0x8d95a3), rgb(0x5aa9ff), rgb(0x0c1420), rgb(0x2a2d33),
-                                 rgb(0x24272c), rgb(0x0d0f12), rgb(0xff9d5c)};
+    static constexpr Theme theme{.is_light = false,
+                                 .canvas = rgb(0x17191d),
+                                 .panel = rgb(0x212429),
+                                 .raised = rgb(0x2b2f36),
+                                 .line = rgb(0x343942),
+                                 .over = rgb(0x3d434d),
+                                 .text = rgb(0xdfe3ea),
+                                 .soft = rgb(0xc3c9d3),
+                                 .muted = rgb(0x9aa2b0),
+                                 .dim = rgb(0x747c8a),
+                                 .accent = rgb(0x5aa9ff),
+                                 .accent_over = rgb(0x7bbaff),
+                                 .accent_pressed = rgb(0x3f93ee),
+                                 .on_accent = rgb(0x0c1420),
+                                 .warning = rgb(0xff9d5c),
+                                 .check_light = rgb(0x383c44),
+                                 .check_dark = rgb(0x2a2d33)};
     return theme;
 }
 
 const Theme& light_theme() {
-    static constexpr Theme theme{true,          rgb(0xf4f5f7), rgb(0xffffff), rgb(0xe9ebef), rgb(0xd5d9e0),
-                                 rgb(0x1d2128), rgb(0x667080), rgb(0x0b6bcb), rgb(0xffffff), rgb(0xffffff),
-                                 rgb(0xe9ebef), rgb(0x1d2128), rgb(0xa84400)};
+    static constexpr Theme theme{.is_light = true,
+                                 .canvas = rgb(0xf4f5f7),
+                                 .panel = rgb(0xffffff),
+                                 .raised = rgb(0xe9ebef),
+                                 .line = rgb(0xd5d9e0),
+                                 .over = rgb(0xdcdfe5),
+                                 .text = rgb(0x1d2128),
+                                 .soft = rgb(0x363c46),
+                                 .muted = rgb(0x596373),
+                                 .dim = rgb(0x7f8794),
+                                 .accent = rgb(0x0a62ba),
+                                 .accent_over = rgb(0x1f74cf),
+                                 .accent_pressed = rgb(0x084c93),
+                                 .on_accent = rgb(0xffffff),
+                                 .warning = rgb(0xa84400),
+                                 .check_light = rgb(0xffffff),
+                                 .check_dark = rgb(0xe3e6eb)};
     return theme;
+}
+
+namespace {
+
+/// WCAG 2.1, "relative luminance".
+double luminance(ImU32 colour) {
+    const auto linear = [](float v) {
+        return v <= 0.04045f ? double(v) / 12.92 : std::pow((double(v) + 0.055) / 1.055, 2.4);
+    };
+    const ImVec4 c = ImGui::ColorConvertU32ToFloat4(colour);
+    return 0.2126 * linear(c.x) + 0.7152 * linear(c.y) + 0.0722 * linear(c.z);
+}
+
+}  // namespace
+
+double contrast(ImU32 one, ImU32 other) {
+    const auto [darker, lighter] = std::minmax({luminance(one), luminance(other)});
+    return (lighter + 0.05) / (darker + 0.05);
 }
 
 ImU32 faded(ImU32 colour, float part) {
@@ -62,6 +111,7 @@ void apply_theme(const Theme& theme, float scale) {
     style.GrabMinSize = 14;
     style.WindowBorderSize = style.PopupBorderSize = 1;
     style.FrameBorderSize = 0;
+    style.DisabledAlpha = disabled_opacity;
     style.WindowMenuButtonPosition = ImGuiDir_None;
     style.ScaleAllSizes(scale);
 
@@ -82,7 +132,7 @@ void apply_theme(const Theme& theme, float scale) {
     set(ImGuiCol_TitleBg, theme.panel);
     set(ImGuiCol_TitleBgActive, theme.panel);
     set(ImGuiCol_Button, theme.raised);
-    set(ImGuiCol_ButtonHovered, theme.line);
+    set(ImGuiCol_ButtonHovered, theme.over);
     set(ImGuiCol_ButtonActive, theme.line);
     set(ImGuiCol_Header, theme.raised);
     set(ImGuiCol_HeaderHovered, theme.raised);
@@ -92,7 +142,7 @@ void apply_theme(const Theme& theme, float scale) {
     set(ImGuiCol_SliderGrabActive, theme.accent);
     set(ImGuiCol_Separator, theme.line);
     set(ImGuiCol_ScrollbarBg, IM_COL32_BLACK_TRANS);
-    set(ImGuiCol_ScrollbarGrab, theme.line);
+    set(ImGuiCol_ScrollbarGrab, theme.over);
     set(ImGuiCol_ScrollbarGrabHovered, theme.muted);
     set(ImGuiCol_ScrollbarGrabActive, theme.muted);
     set(ImGuiCol_TextSelectedBg, faded(theme.accent, 0.4f));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gui/shown_text.h"
+
 namespace probewarp {
 
 void draw_icon(ImFont* font, ImVec2 middle, ImU32 colour, const char* symbol) {
@@ -14,8 +16,17 @@ void draw_icon(ImFont* font, ImVec2 middle, ImU32 colour, const char* symbol) {
 
 void tooltip(const char* text) {
     if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || !*text) return;
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {10, 6});
-    ImGui::SetTooltip("%s", text);
+    show_tooltip(text);
+}
+
+void show_tooltip(const std::string& text) {
+    const float size = ImGui::GetFontSize(), room = ImGui::GetIO().DisplaySize.x;
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {size * 0.65f, size * 0.4f});
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(std::min(size * 28, room - size * 3));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
     ImGui::PopStyleVar();
 }
 
@@ -38,8 +49,8 @@ bool icon_button(App& app, const char* id, const char* symbol, const char* tip, 
     const bool clicked = ImGui::InvisibleButton(id, {side, side}) && why_not.empty();
     const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
     const bool hovered = ImGui::IsItemHovered() && why_not.empty();
-    if (hovered) ImGui::GetWindowDrawList()->AddRectFilled(from, to, app.theme.line, app.px(5));
-    const ImU32 colour = !why_not.empty() ? faded(app.theme.muted, 0.45f)
+    if (hovered) ImGui::GetWindowDrawList()->AddRectFilled(from, to, app.theme.over, app.px(5));
+    const ImU32 colour = !why_not.empty() ? app.theme.dim
                          : on             ? app.theme.accent
                          : hovered        ? app.theme.text
                                           : app.theme.muted;
@@ -55,8 +66,8 @@ bool accent_button(App& app, const char* label, ImVec2 size, const char* symbol,
     const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
     const bool lit = ImGui::IsItemHovered() && enabled;
     ImU32 fill = enabled ? app.theme.accent : app.theme.raised;
-    if (lit) fill = mixed(fill, IM_COL32_WHITE, ImGui::IsItemActive() ? 0.05f : 0.15f);
-    const ImU32 ink = enabled ? app.theme.on_accent : app.theme.muted;
+    if (lit) fill = ImGui::IsItemActive() ? app.theme.accent_pressed : app.theme.accent_over;
+    const ImU32 ink = enabled ? app.theme.on_accent : app.theme.dim;
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled(from, to, fill, app.px(5));
     if (ImGui::IsItemFocused() && ImGui::GetIO().NavVisible)
@@ -80,10 +91,10 @@ bool section(App& app, const char* id, const char* title, bool& open, bool* add)
     const ImU32 chevron = ImGui::IsItemHovered() ? app.theme.text : app.theme.muted;
     draw_icon(app.fonts.icons_small, {from.x + app.px(4), from.y + height / 2}, chevron,
               open ? icon::down : icon::right);
-    ImFont* font = app.fonts.strong;
-    ImGui::GetWindowDrawList()->AddText(
-        font, font->FontSize, {from.x + app.px(18), std::round(from.y + (height - font->FontSize) / 2)},
-        app.theme.text, title);
+    ImGui::PushFont(app.fonts.strong);
+    draw_shown(app, {from.x + app.px(18), std::round(from.y + (height - ImGui::GetFontSize()) / 2)},
+               width - app.px(add ? 48 : 18), app.theme.text, title);
+    ImGui::PopFont();
     if (add) {
         ImGui::SetCursorScreenPos({from.x + width - app.px(22), from.y - app.px(1)});
         *add = icon_button(app, "##add", icon::plus, "Add a probe in the middle of the picture");
@@ -156,7 +167,7 @@ void begin_section_gap(App& app) {
 bool begin_combo(App& app, const char* id, const char* shown, float width) {
     ImGui::SetNextItemWidth(width);
     ImGui::PushStyleColor(ImGuiCol_FrameBg, app.theme.raised);
-    ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, app.theme.line);
+    ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, app.theme.over);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->ChannelsSplit(2);  // the chevron lies over the frame that BeginCombo draws

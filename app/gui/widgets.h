@@ -46,6 +46,8 @@ void begin_section_gap(App& app);
 bool begin_combo(App& app, const char* id, const char* shown, float width);
 
 void tooltip(const char* text);
+/// The tooltip's box, in lines that the window has room for.
+void show_tooltip(const std::string& text);
 /// Of an item of a list: beside the list, so that it hides none of the others.
 void list_tooltip(const App& app, const std::string& text);
 

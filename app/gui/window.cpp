@@ -45,7 +45,7 @@ void on_close(GLFWwindow* window) {
 void on_drop(GLFWwindow* window, int count, const char** paths) {
     App& app = app_of(window);
     app.wake();
-    if (count > 0 && !app.modal) open_path(app, paths[0]);
+    open_dropped(app, {paths, std::size_t(std::max(0, count))});
 }
 
 void on_damage(GLFWwindow* window) {
@@ -53,7 +53,27 @@ void on_damage(GLFWwindow* window) {
     app.redraws = true;
     app.wake();
 }
-void on_size(GLFWwindow* window, int, int) { on_damage(window); }
+
+/// How large the window must be for all of it to be in reach, pixels at scale 1.
+constexpr float least_width = 640, least_height = 480;
+
+/// As much of the scale as a window of that size has room for, in steps that are worth rasterising fonts for.
+float scale_within(float scale, ImVec2 size) {
+    const float room = std::min(size.x / least_width, size.y / least_height);
+    return std::min(scale, std::max(0.5f, std::floor(room * 8) / 8));
+}
+
+void fit_scale(App& app, ImVec2 size) {
+    const float scale = scale_within(app.display_scale, size);
+    if (scale == app.scale) return;
+    app.scale = scale;
+    app.fonts = {};  // rasterised anew before the next frame
+}
+
+void on_size(GLFWwindow* window, int width, int height) {
+    fit_scale(app_of(window), {float(width), float(height)});
+    on_damage(window);
+}
 
 void use_fonts(App& app, const Fonts& fonts) {
     app.fonts = fonts;
@@ -62,16 +82,31 @@ void use_fonts(App& app, const Fonts& fonts) {
 }
 
 void rebuild_fonts(App& app) {
-    use_fonts(app, load_fonts(app.scale));
+    use_fonts(app, load_fonts_with(app.scale, app.glyphs.loaded));
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
     app.redraws = true;
 }
 
+/// 640 x 480 at scale 1, or what the monitor has room for.
+void set_least_size(GLFWwindow* window, float scale) {
+    int x = 0, y = 0, width = 0, height = 0;
+    if (GLFWmonitor* monitor = glfwGetPrimaryMonitor())
+        glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+    const auto least = [](float wanted, int room) {
+        return room > 0 ? std::min(int(wanted), room) : int(wanted);
+    };
+    glfwSetWindowSizeLimits(window, least(least_width * scale, width), least(least_height * scale, height),
+                            GLFW_DONT_CARE, GLFW_DONT_CARE);
+}
+
 void on_content_scale(GLFWwindow* window, float scale, float) {
     App& app = app_of(window);
-    if (!std::getenv("PROBEWARP_UI_SCALE")) app.scale = std::clamp(scale, 0.5f, 4.0f);
-    app.fonts = {};  // rasterised anew before the next frame
+    if (!std::getenv("PROBEWARP_UI_SCALE")) app.display_scale = std::clamp(scale, 0.5f, 4.0f);
+    set_least_size(window, app.display_scale);
+    int width = 0, height = 0;
+    glfwGetWindowSize(window, &width, &height);
+    fit_scale(app, {float(width), float(height)});
     app.wake();
 }
 
@@ -215,7 +250,7 @@ void draw_makeshift(App& app) {
 }
 
 void draw_frame(App& app) {
-    if (!app.fonts.text) rebuild_fonts(app);
+    if (app.glyphs.update(app.scale) || !app.fonts.text) rebuild_fonts(app);
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     place_mouse(app);
@@ -311,13 +346,15 @@ void run(App& app) {
 int run_window(const std::string& path, DeformBy deform_by) {
     const Glfw glfw;
     App app;
-    app.scale = wanted_scale(glfwGetPrimaryMonitor());
+    app.display_scale = wanted_scale(glfwGetPrimaryMonitor());
+    app.scale = scale_within(app.display_scale, window_size(glfwGetPrimaryMonitor(), app.display_scale));
     app.editor.deforms_elsewhere = true;
     app.editor.deform_by = deform_by;
     // The driver takes most of the time until the first frame: fonts and file are read meanwhile.
     Toolkit toolkit(app.scale);
     if (!path.empty()) open_path(app, path);
-    app.window = open_window(app.scale);
+    app.window = open_window(app.display_scale);
+    set_least_size(app.window, app.display_scale);
     load_gl(&glfwGetProcAddress);
     glfwSetWindowUserPointer(app.window, &app);
     app.renderer = std::make_unique<Renderer>();

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Drops a file on a window as a file manager does, by the X drag-and-drop protocol: drop_file.py WINDOW PATH X Y"""
+"""Drops files on a window as a file manager does, by the X drag-and-drop protocol: drop_file.py WINDOW PATHS X Y
+PATHS: one a line; what begins with a scheme ("file:", "http:") is dropped as it is."""
+import re
 import sys
 import time
 
 from Xlib import X, display
 from Xlib.protocol import event
 
-window, path, x, y = int(sys.argv[1]), sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
+window, paths, x, y = int(sys.argv[1]), sys.argv[2].split("\n"), int(sys.argv[3]), int(sys.argv[4])
+uris = "".join((path if re.match("[a-zA-Z]+:", path) else f"file://{path}") + "\r\n" for path in paths)
 screen = display.Display()
 atom = screen.intern_atom
 target = screen.create_resource_object("window", window)
@@ -35,7 +38,7 @@ while time.monotonic() < end:
     elif e.type == X.ClientMessage and e.client_type == atom("XdndFinished"):
         sys.exit(0)
     elif e.type == X.SelectionRequest:
-        e.requestor.change_property(e.property, e.target, 8, f"file://{path}\r\n".encode())
+        e.requestor.change_property(e.property, e.target, 8, uris.encode())
         e.requestor.send_event(event.SelectionNotify(time=e.time, requestor=e.requestor, selection=e.selection,
                                                      target=e.target, property=e.property))
         screen.flush()
