@@ -161,27 +161,34 @@ void read_header(Decoder& decoder, Bytes bytes, bool salvage) {
 
 // ---- what is there of a file ----
 
-/// Where the file ends, or the segment begins of which it has only a part: libjpeg takes the rest of that for
-/// nonsense and gives up.
+/// Where the segment begins of which the file has only a part; its size where there is none.
 std::size_t end_of_segments(Bytes file) {
-    std::size_t at = 2;
-    while (at < file.size()) {
+    for (std::size_t at = 2; at < file.size();) {
         const auto rest = file.subspan(at);
         at += std::size_t(std::ranges::find(rest, std::byte{0xFF}) - rest.begin());
         if (file.size() - at < 2) break;
         const unsigned marker = u8(file, at + 1);
-        const bool alone = marker <= 1 || (marker >= JPEG_RST0 && marker < JPEG_RST0 + 9);
-        if (marker == JPEG_EOI) return file.size();
-        if (marker == 0xFF || alone) {
-            at += alone ? 2 : 1;
+        if (marker == JPEG_EOI) break;
+        const bool restart = marker >= JPEG_RST0 && marker < JPEG_RST0 + 8;
+        if (marker < 0xC0 || marker == 0xFF || restart) {  // amid the pixels' data
+            ++at;
             continue;
         }
-        if (file.size() - at < 4) return at;
-        const std::size_t end = at + 2 + be16(file, at + 2);
+        const std::size_t end = file.size() - at < 4 ? file.size() + 1 : at + 2 + be16(file, at + 2);
         if (end > file.size()) return at;
         at = end;
     }
     return file.size();
+}
+
+/// Of a file in several scans with a segment that cannot be read: what comes before that.
+Bytes before_the_bad_segment(const Decoder& decoder, Bytes file) {
+    const auto* first = reinterpret_cast<const JOCTET*>(file.data());
+    const JOCTET* segment = decoder.jpeg.src->next_input_byte;  // behind its marker of two bytes
+    // At the file's end libjpeg has bytes of its own.
+    const bool inside =
+        std::less_equal<>()(first + 2, segment) && std::less<>()(segment, first + file.size());
+    return file.first(inside ? std::size_t(segment - first) - 2 : end_of_segments(file));
 }
 
 /// Ready to decode rows. Of a file in several scans it has read all, before the pixels, so that a bad one
@@ -194,12 +201,8 @@ std::unique_ptr<Decoder> begin_decoding(Bytes bytes, bool salvage, bool again = 
     const bool cmyk = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
     jpeg.out_color_space = cmyk ? JCS_CMYK : JCS_EXT_RGBA;
     if (protect(decoder->errors, [&] { jpeg_start_decompress(&jpeg); })) return decoder;
-    const auto* first = reinterpret_cast<const JOCTET*>(bytes.data());
-    const JOCTET* segment = jpeg.src->next_input_byte;  // behind its marker of two bytes
-    const bool inside =
-        std::less_equal<>()(first + 2, segment) && std::less<>()(segment, first + bytes.size());
-    if (salvage && again && inside && decoder->errors.trouble == JpegTrouble::damaged && decoder->has_rows())
-        return begin_decoding(bytes.first(std::size_t(segment - first) - 2), salvage, false);
+    if (salvage && again && decoder->errors.trouble == JpegTrouble::damaged && decoder->has_rows())
+        return begin_decoding(before_the_bad_segment(*decoder, bytes), salvage, false);
     report(decoder->errors, !decoder->errors.fatal || decoder->has_rows());
 }
 
@@ -231,9 +234,7 @@ Exif read_exif(const jpeg_decompress_struct& jpeg) {
 
 class JpegReader final : public RowReader {
   public:
-    JpegReader(Bytes bytes, const DecodeOptions& options)
-        : decoder_(begin_decoding(options.salvage ? bytes.first(end_of_segments(bytes)) : bytes,
-                                  options.salvage)) {
+    JpegReader(Bytes bytes, const DecodeOptions& options) : decoder_(begin_decoding(bytes, options.salvage)) {
         const jpeg_decompress_struct& jpeg = decoder_->jpeg;
         if (jpeg.out_color_space == JCS_CMYK)
             to_srgb_.emplace(jpeg.saw_Adobe_marker ? ForeignColours::cmyk_inverted : ForeignColours::cmyk,
