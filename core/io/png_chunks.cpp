@@ -182,6 +182,7 @@ class Survey {
         // Before libspng sees it, which would only say that some limit is exceeded.
         check_image_size(be32(chunk.data, 0), be32(chunk.data, 4), u8(chunk.data, 8) == 16 ? 16 : 8);
         depth_ = u8(chunk.data, 8);
+        if (depth_ > 16) throw damaged("PNG", spng_strerror(SPNG_EBIT_DEPTH));
         colour_type_ = u8(chunk.data, 9);
         header_ = true;
         add(chunk.all);

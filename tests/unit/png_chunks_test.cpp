@@ -214,6 +214,9 @@ TEST(PngChunks, CriticalOnesMustBeRight) {
     expect_refused(join({png_signature, png_chunk("tEXt", {}), png_header(2, 2, 8, 2), rgb_data}), "a.png",
                    "it does not start with IHDR");
     expect_refused(join({rgb_head, end_chunk}), "a.png", "it has no pixels");
+    for (const int depth : {0, 3, 17, 247})
+        expect_refused(join({png_signature, png_header(2, 2, depth, 2), png_chunk("tRNS", key), rgb_data}),
+                       "a.png", "invalid bit depth");
 }
 
 TEST(PngChunks, WhatFollowsThePixelsMayBeMissingOrNonsense) {
