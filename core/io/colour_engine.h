@@ -29,6 +29,12 @@ struct CloseProfile {
 /// Null where there is none. Dies before its engine.
 using Profile = std::unique_ptr<void, CloseProfile>;
 
+struct FreeCurve {
+    void operator()(cmsToneCurve* curve) const { cmsFreeToneCurve(curve); }
+};
+/// Null where there is none. Dies before its engine.
+using ToneCurve = std::unique_ptr<cmsToneCurve, FreeCurve>;
+
 struct DeleteTransform {
     void operator()(void* transform) const { cmsDeleteTransform(transform); }
 };

@@ -1,8 +1,11 @@
 #include "io/colours.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
+#include "io/cicp.h"
 #include "io/colour_engine.h"
 
 namespace probewarp {
@@ -38,23 +41,53 @@ Profile rgb_profile_from(const ColourEngine& engine, const Chromaticities& c, cm
     return Profile(cmsCreateRGBProfileTHR(engine.context, &white, &primaries, curves.data()));
 }
 
+/// The curve of a grey profile whose colours are Lab: it leads to lightness, and this one to light.
+ToneCurve light_of_lightness(const ColourEngine& engine, const cmsToneCurve* lightness) {
+    std::vector<cmsUInt16Number> table(4096);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        const float l = cmsEvalToneCurveFloat(lightness, float(i) / float(table.size() - 1));
+        const cmsCIELab lab{std::clamp(double(l), 0.0, 1.0) * 100, 0, 0};
+        cmsCIEXYZ xyz;
+        cmsLab2XYZ(nullptr, &xyz, &lab);
+        table[i] = cmsUInt16Number(std::lround(std::clamp(xyz.Y, 0.0, 1.0) * 65535));
+    }
+    ToneCurve curve(
+        cmsBuildTabulatedToneCurve16(engine.context, cmsUInt32Number(table.size()), table.data()));
+    if (!curve) throw std::bad_alloc();
+    return curve;
+}
+
 std::vector<std::byte> from_grey(Bytes icc) {
     const ColourEngine engine;
     const Profile grey = open_profile(engine, icc);
     if (!grey) return {};
     auto* const curve = static_cast<cmsToneCurve*>(cmsReadTag(grey.get(), cmsSigGrayTRCTag));
-    return curve ? saved(rgb_profile_from(engine, srgb_chromaticities, curve)) : std::vector<std::byte>();
+    if (!curve) return {};
+    if (cmsGetPCS(grey.get()) != cmsSigLabData)
+        return saved(rgb_profile_from(engine, srgb_chromaticities, curve));
+    const ToneCurve light = light_of_lightness(engine, curve);
+    return saved(rgb_profile_from(engine, srgb_chromaticities, light.get()));
 }
 
 std::vector<std::byte> from_gamma(std::uint32_t gamma, const Chromaticities& chromaticities) {
     if (gamma == 0) return {};
     const ColourEngine engine;
-    cmsToneCurve* const curve = cmsBuildGamma(engine.context, 100000.0 / gamma);
+    const ToneCurve curve(cmsBuildGamma(engine.context, 100000.0 / gamma));
     if (!curve) throw std::bad_alloc();
-    const Profile profile = rgb_profile_from(engine, chromaticities, curve);
-    cmsFreeToneCurve(curve);
-    return saved(profile);
+    return saved(rgb_profile_from(engine, chromaticities, curve.get()));
 }
+
+/// Empty for code points that no profile of ours says.
+std::vector<std::byte> from_cicp(const std::array<std::uint8_t, 4>& cicp) {
+    const auto [primaries, transfer, matrix, full_range] = cicp;
+    const std::optional<Chromaticities> chromaticities = chromaticities_of_primaries(primaries);
+    if (!chromaticities || matrix != 0 || full_range != 1) return {};
+    const ColourEngine engine;
+    const ToneCurve curve = curve_of_transfer(engine, transfer);
+    return curve ? saved(rgb_profile_from(engine, *chromaticities, curve.get())) : std::vector<std::byte>();
+}
+
+constexpr std::array<std::uint8_t, 4> srgb_cicp{1, 13, 0, 1};
 
 }  // namespace
 
@@ -65,6 +98,12 @@ std::vector<std::byte> rgb_profile(Bytes profile) {
 }
 
 std::vector<std::byte> profile_of(const Description& description) {
+    if (description.cicp) {
+        if (*description.cicp == srgb_cicp) return {};
+        // Where nobody here can say what it means, what stands beside it for such readers holds.
+        std::vector<std::byte> made = from_cicp(*description.cicp);
+        if (!made.empty()) return made;
+    }
     if (!description.icc.empty()) return description.icc;
     if (description.srgb_intent) return {};
     if (description.gamma)

@@ -16,8 +16,8 @@ inline constexpr std::size_t max_icc_bytes = std::size_t{4} << 20;
 /// that shows equal samples alike; empty where it is for other colours, cannot be read, or is too large.
 std::vector<std::byte> rgb_profile(Bytes profile);
 
-/// An ICC profile that says of the colours what the description says: its own, or one made from gamma and
-/// chromaticities. Empty where they are sRGB or nothing is said.
+/// An ICC profile that says of the colours what the description says: one made from its cICP, its own, or one
+/// made from gamma and chromaticities, whichever comes first. Empty where they are sRGB or nothing is said.
 std::vector<std::byte> profile_of(const Description& description);
 
 }  // namespace probewarp

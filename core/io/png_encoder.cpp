@@ -273,13 +273,38 @@ void put_profile(std::vector<std::byte>& to, Bytes icc) {
     put_chunk(to, "iCCP", data);
 }
 
-void put_resolution(std::vector<std::byte>& to, const std::optional<Resolution>& resolution) {
-    if (!resolution || !is_resolution(resolution->x, resolution->y)) return;
+/// What the file says of its colours, in the order of section 5.6; where a profile stands, sRGB may not.
+void put_colours(std::vector<std::byte>& to, const Description& said) {
+    if (said.cicp) put_chunk(to, "cICP", std::as_bytes(std::span(*said.cicp)));
+    put_profile(to, said.icc);
+    if (said.srgb_intent && said.icc.empty()) put_chunk(to, "sRGB", std::array{std::byte(*said.srgb_intent)});
     std::vector<std::byte> data;
-    put_be32(data, resolution->x);
-    put_be32(data, resolution->y);
-    data.push_back(std::byte{1});  // per metre
+    if (said.gamma) {
+        put_be32(data, *said.gamma);
+        put_chunk(to, "gAMA", data);
+    }
+    if (said.chromaticities) {
+        data.clear();
+        for (const std::uint32_t xy : *said.chromaticities) put_be32(data, xy);
+        put_chunk(to, "cHRM", data);
+    }
+}
+
+/// unit: 1 for a metre, 0 for one that nobody knows
+void put_pixel_size(std::vector<std::byte>& to, const Resolution& pixels, int unit) {
+    if (!is_resolution(pixels.x, pixels.y)) return;
+    std::vector<std::byte> data;
+    put_be32(data, pixels.x);
+    put_be32(data, pixels.y);
+    data.push_back(std::byte(unit));
     put_chunk(to, "pHYs", data);
+}
+
+void put_offset(std::vector<std::byte>& to, const std::array<std::int32_t, 2>& offset) {
+    std::vector<std::byte> data;
+    for (const std::int32_t pixels : offset) put_be32(data, std::uint32_t(pixels));
+    data.push_back(std::byte{0});  // pixels
+    put_chunk(to, "oFFs", data);
 }
 
 std::vector<std::byte> joined(std::vector<std::byte> all, const FileParts& parts) {
@@ -305,8 +330,13 @@ std::vector<std::byte> png_beginning(const PngShape& shape, const Description& d
     std::vector<std::byte> begin;
     put_text(begin, "\x89PNG\r\n\x1a\n");
     put_header(begin, shape);
-    put_profile(begin, description.icc);
-    put_resolution(begin, description.resolution);
+    put_colours(begin, description);
+    if (description.resolution)
+        put_pixel_size(begin, *description.resolution, 1);
+    else if (description.aspect)
+        put_pixel_size(begin, *description.aspect, 0);
+    if (!description.exif.empty()) put_chunk(begin, "eXIf", description.exif);
+    if (description.offset) put_offset(begin, *description.offset);
     return begin;
 }
 

@@ -6,6 +6,7 @@ The first byte of an image or project seed says how the target reads the rest: s
 
 import json
 import os
+import struct
 import sys
 import zipfile
 import zlib
@@ -20,6 +21,33 @@ JPEG = ("ffd8ffe000104a46494600010101004800480000ffdb004300" + "01" * 64 + "ffc0
         "9495969798999aa2a3a4a5a6a7a8a9aab2b3b4b5b6b7b8b9bac2c3c4c5c6c7c8c9cad2d3d4d5d6d7d8d9dae1e2e3e4e5e6e7e8e9eaf1f2f3f4f5f6f7"
         "f8f9fa" "ffda0008010100003f002b" "ffd9")
 EXIF = "ffe100224578696600004d4d002a00000008000101120003000000010006000000000000"
+
+
+def described_images():
+    """PNG and JPEG with what describes them, and of unusual kinds that are sound."""
+    described = files.described_png()
+    yield "png", described
+    yield "png", described[:-files.behind_the_pixels(described)]
+    pixels = files.png_chunk(b"IDAT", zlib.compress(bytes([0, 1, 2, 3, 0, 4, 5, 6])))
+    key = files.png_chunk(b"tRNS", bytes([0, 1, 0, 2, 0, 3]))
+    yield "png", files.png_header(1, 2, 8, 2) + key + files.png_chunk(b"PLTE", bytes(6)) + pixels
+    plain = bytes.fromhex(JPEG)
+    profile = b"\xff\xe2\0\x20ICC_PROFILE\0\1\1" + bytes(16)
+    adobe = b"\xff\xee\0\x0eAdobe\0\x64\0\0\0\0\2"
+    yield "jpg", plain[:20] + profile + adobe + plain[20:]
+    yield "jpg", plain[:2] + plain[20:]
+    # The resolution and the rest in EXIF, big end first.
+    tiff = (b"MM\0*" + struct.pack(">IH", 8, 3) + struct.pack(">HHIHH", 0x112, 3, 1, 8, 0)
+            + struct.pack(">HHII", 0x11A, 5, 1, 50) + struct.pack(">HHI4s", 0x8298, 2, 3, b"me") + bytes(4)
+            + struct.pack(">II", 300, 1))
+    yield "jpg", plain[:20] + b"\xff\xe1" + struct.pack(">H", len(tiff) + 8) + b"Exif\0\0" + tiff + plain[20:]
+
+
+def salvaged_images():
+    """What is there of files that end too soon."""
+    for data in files.png(40, 30), files.png(40, 30, interlaced=1), files.described_png(40, 30):
+        yield "png", data[:len(data) * 2 // 3]
+    yield "jpg", bytes.fromhex(JPEG)[:-3]
 
 
 def images():
@@ -57,9 +85,12 @@ def save(folder, data, number):
 
 
 def main(folder):
-    for i, (ending, data) in enumerate(images()):
-        # 1: as TGA; 2: checksums of a PNG are put right first.
-        save(os.path.join(folder, "image"), bytes([{"tga": 1, "png": 2}.get(ending, 0)]) + data, i)
+    # 1: as TGA; 2: checksums of a PNG are put right first; 8: what is there of the file is opened.
+    kinds = {"tga": 1, "png": 2}
+    seeds = [bytes([kinds.get(ending, 0)]) + data for ending, data in [*images(), *described_images()]]
+    seeds += [bytes([kinds.get(ending, 0) | 8]) + data for ending, data in salvaged_images()]
+    for i, data in enumerate(seeds):
+        save(os.path.join(folder, "image"), data, i)
     text = json.dumps(files.fields()).encode()
     seeds = [b"\0" + files.project(), b"\1" + text, b"\1" + json.dumps(dict(files.fields(), probes=[])).encode(),
              b"\0" + files.project_of(text, files.png(2, 2), "image.png"), b"\1{}"]

@@ -137,12 +137,24 @@ class BadFiles(unittest.TestCase):
     def test_truncated_at_every_byte(self):
         cut = 0
         for name, data in files.sound(program, self.inputs):
-            lengths = set(range(len(data))) if len(data) <= 400 else set(range(0, len(data), 7))
-            lengths |= set(range(max(0, len(data) - 16), len(data)))
+            end = len(data)
+            if name.endswith(".png"):
+                end -= files.behind_the_pixels(data)
+            lengths = set(range(end)) if len(data) <= 400 else set(range(0, end, 7))
+            lengths |= set(range(max(0, end - 16), end))
             for length in sorted(lengths):
                 self.refused(name, data[:length], "is empty" if length == 0 else "", quick=True)
             cut += len(lengths)
         print(f"  {cut} truncated files", flush=True)
+
+    def test_cut_behind_the_pixels(self):
+        """A PNG whose pixels are all there opens, whatever of its end is missing."""
+        for name, data in files.sound(program, self.inputs):
+            if name.endswith(".png"):
+                for missing in range(1, files.behind_the_pixels(data) + 1):
+                    write(self.place(name), data[:-missing])
+                    result = program.run("info", self.place(name), "--json")
+                    self.assertEqual((result.code, result.err), (0, b""), f"{name} without its last {missing}")
 
     def test_truncated_where_nothing_shows(self):
         """The picture is drawn while it is decoded, and here its lower half has left the frame."""

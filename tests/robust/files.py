@@ -37,6 +37,30 @@ def png(width, height, bits=8, colour=6, interlaced=0, extra=b"", seed=7):
             + png_chunk(b"IEND", b""))
 
 
+def behind_the_pixels(data):
+    """How many bytes of a PNG, from its end, stand behind its pixels' data."""
+    at = 8
+    while at < len(data):
+        length, kind = struct.unpack_from(">I4s", data, at)
+        if kind == b"IDAT":
+            end = at + 8 + length
+        at += 12 + length
+    return len(data) - end
+
+
+def described_png(width=3, height=2):
+    """Every chunk that describes the picture, and EXIF that turns it."""
+    exif = (b"II*\0" + struct.pack("<IH", 8, 3) + struct.pack("<HHIHH", 0x112, 3, 1, 6, 0)
+            + struct.pack("<HHII", 0x13B, 2, 4, int.from_bytes(b"Ann\0", "little"))
+            + struct.pack("<HHII", 0x8769, 4, 1, 50) + bytes(4)
+            + struct.pack("<HHHII", 1, 0x9003, 2, 20, 68) + bytes(4) + b"2020:01:02 03:04:05\0")
+    chunks = [(b"cICP", bytes([12, 13, 0, 1])), (b"sRGB", b"\0"), (b"gAMA", struct.pack(">I", 45455)),
+              (b"cHRM", struct.pack(">8I", 31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000)),
+              (b"pHYs", struct.pack(">IIB", 2, 1, 0)), (b"eXIf", exif), (b"oFFs", struct.pack(">iiB", -3, 4, 0)),
+              (b"tEXt", b"Comment\0of no matter"), (b"bKGD", bytes(6))]
+    return png(width, height, colour=2, extra=b"".join(png_chunk(kind, data) for kind, data in chunks))
+
+
 def bmp(width, height, bits=24):
     palette = bytes(range(16)) if bits == 8 else b""
     row = bytes(i % 4 for i in range(width * bits // 8))
@@ -205,7 +229,7 @@ def sound(program, folder):
     made = [
         ("rgba8.png", png(5, 4)), ("grey8.png", png(6, 5, 8, 0)), ("rgb16.png", png(4, 3, 16, 2)),
         ("rgba16.png", png(3, 3, 16, 6)), ("palette.png", png(6, 4, 2, 3)), ("interlaced.png", png(7, 6, 8, 2, 1)),
-        ("bits.png", png(9, 4, 1, 0)),
+        ("bits.png", png(9, 4, 1, 0)), ("described.png", described_png()),
         ("rgb.bmp", bmp(5, 3)), ("down.bmp", bmp(3, -2)), ("palette.bmp", bmp(5, 3, 8)),
         ("raw.tga", tga(5, 4)), ("packed.tga", tga(9, 5, True)),
         ("small.gif", gif(12, 10)), ("raw.psd", psd(5, 3)), ("packed.psd", psd(9, 3, True)), ("deep.psd", psd(3, 2, bits=16)),

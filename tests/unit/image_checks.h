@@ -47,8 +47,7 @@ inline Image decode(const File& file, const std::string& name = "picture") {
     EXPECT_EQ(arriving.width, image.width);
     EXPECT_EQ(arriving.height, image.height);
     EXPECT_EQ(arriving.rgba, image.rgba);
-    EXPECT_EQ(arriving.description.icc, image.description.icc);
-    EXPECT_EQ(arriving.description.resolution, image.description.resolution);
+    EXPECT_EQ(arriving.description, image.description);
     return image;
 }
 
@@ -65,10 +64,13 @@ inline std::vector<Rgba> pixels(const Image& image) {
 }
 
 /// Every prefix of the file is refused as truncated, or, while it is too short to be recognised, as no
-/// picture.
-inline void expect_each_cut_refused(const File& file, const std::string& name) {
+/// picture. needless: bytes at the end without which it opens, with all of its pixels
+inline void expect_each_cut_refused(const File& file, const std::string& name, std::size_t needless = 0) {
     ASSERT_EQ(error_of(file, name), "");
-    for (std::size_t size = 0; size < file.size(); ++size) {
+    for (std::size_t size = file.size() - needless; size < file.size(); ++size)
+        EXPECT_EQ(pixels(decode(File(file.begin(), file.begin() + std::ptrdiff_t(size)), name)),
+                  pixels(decode(file, name)));
+    for (std::size_t size = 0; size < file.size() - needless; ++size) {
         const File cut(file.begin(), file.begin() + std::ptrdiff_t(size));
         ASSERT_THAT(error_of(cut, name),
                     ::testing::AnyOf(::testing::HasSubstr(name + ": is truncated; expected a whole "),

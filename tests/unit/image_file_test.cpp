@@ -283,13 +283,14 @@ TEST(ImageFile, PngBombsAndLies) {
     expect_refused(of_size(0, 1), "a.png", "is 0 x 1 pixels");
 
     const File bomb = deflate_bomb(1024);
-    expect_refused(small_png(png_chunk("iCCP", join({bytes_of("x"), bytes({0, 0}), bomb})), idat), "a.png",
-                   "is damaged");
     expect_refused(small_png({}, bomb), "a.png", "more data than its pixels need");
-    const File text = small_png(png_chunk("zTXt", join({bytes_of("x"), bytes({0, 0}), bomb})), idat);
     const long long before = peak_memory();
-    EXPECT_EQ(pixels(decode(text)).size(), 4u) << "text does not matter";
-    EXPECT_LT(peak_memory() - before, 64 << 20) << "a gibibyte of text was not unpacked";
+    for (const char* type : {"iCCP", "zTXt"}) {
+        const File file = small_png(png_chunk(type, join({bytes_of("x"), bytes({0, 0}), bomb})), idat);
+        EXPECT_EQ(pixels(decode(file)).size(), 4u) << "left out: " << type;
+        EXPECT_TRUE(decode(file).description.icc.empty());
+    }
+    EXPECT_LT(peak_memory() - before, 64 << 20) << "a gibibyte was not unpacked";
     expect_refused(small_png({}, deflated(bytes({0, 1, 2, 0, 3}))), "a.png",
                    "is damaged (IDAT stream too short)");
     expect_refused(small_png(png_chunk("ABCD", {}), idat), "a.png", "is damaged");

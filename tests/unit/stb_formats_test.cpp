@@ -235,18 +235,19 @@ TEST(Pnm, BadOnesAreRefused) {
 
 // ---- each cut of a file ----
 
-// Exceptions: a TGA's footer, whatever stands behind a GIF's trailer or a PNG's IEND, a plain bitmap's last
+// Exceptions: a TGA's footer, whatever stands behind a GIF's trailer or a PNG's pixels, a plain bitmap's last
 // line break.
 
 const Description described{.icc = File(50), .resolution = Resolution{1, 2}};
 
 TEST(EachCut, OfPngIsRefused) {
+    constexpr std::size_t behind_the_pixels = 4 + 12;  // their checksum, and IEND
     PngSpec spec{3, 3, 8, SPNG_COLOR_TYPE_INDEXED, true, {0, 1, 1, 0, 0, 1, 1, 0, 1}, {}, {}, true};
     spec.palette.n_entries = 2;
     spec.transparency.n_type3_entries = 1;
-    expect_each_cut_refused(make_png(spec), "a.png");
+    expect_each_cut_refused(make_png(spec), "a.png", behind_the_pixels);
     Image image{4, 2, std::vector<std::uint16_t>(32, 999), described};
-    expect_each_cut_refused(find_image_format("png")->encode(image, {}), "a.png");
+    expect_each_cut_refused(find_image_format("png")->encode(image, {}), "a.png", behind_the_pixels);
 }
 
 TEST(EachCut, OfJpegIsRefused) {
