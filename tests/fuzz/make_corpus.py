@@ -29,10 +29,12 @@ def images():
     plain = bytes.fromhex(JPEG)
     yield "jpg", plain
     yield "jpg", plain[:20] + bytes.fromhex(EXIF) + plain[20:]
-    for data in files.bmp(5, 3), files.bmp(3, -2), files.bmp(5, 3, 8), files.bmp(2, 2, 32):
+    for data in (files.bmp(5, 3), files.bmp(3, -2), files.bmp(5, 3, 8), files.bmp(2, 2, 32), files.bmp_of_runs(),
+                 files.bmp_of_masks(), files.bmp_of_os2()):
         yield "bmp", data
-    for data in files.tga(5, 4), files.tga(9, 5, True):
+    for data in files.tga(5, 4), files.tga(9, 5, True), files.tga_of_palette(), files.tga_of_palette(True):
         yield "tga", data
+        yield "any name", data
     yield "gif", files.gif(12, 10)
     for data in files.psd(5, 3), files.psd(9, 3, True), files.psd(3, 2, bits=16):
         yield "psd", data

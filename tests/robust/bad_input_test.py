@@ -141,9 +141,9 @@ class BadFiles(unittest.TestCase):
         for name, data in files.sound(program, self.inputs):
             lengths = set(range(len(data))) if len(data) <= 400 else set(range(0, len(data), 7))
             lengths |= set(range(max(0, len(data) - 16), len(data)))
-            for length in sorted(lengths):
+            for length in sorted(lengths - set(range(len(data) - files.SPARE.get(name, 0), len(data)))):
                 self.refused(name, data[:length], "is empty" if length == 0 else "", quick=True)
-            cut += len(lengths)
+                cut += 1
         print(f"  {cut} truncated files", flush=True)
 
     def test_truncated_where_nothing_shows(self):
@@ -170,7 +170,7 @@ class BadFiles(unittest.TestCase):
         self.refused("a.png", files.png(2, 2).replace(b"\r\n", b"\n"))
         self.refused("a.txt", b"a text\n")
         self.refused("a.svg", b'<svg xmlns="http://www.w3.org/2000/svg"/>')
-        self.refused("a.ppm", b"P7\nWIDTH 1\nHEIGHT 1\nDEPTH 3\nMAXVAL 255\nENDHDR\nabc")
+        self.refused("a.ppm", b"P8\nWIDTH 1\nHEIGHT 1\nDEPTH 3\nMAXVAL 255\nENDHDR\nabc")
         self.refused("a.probewarp", b"{}")
         self.refused("a.probewarp", json.dumps(files.fields()).encode())
 
