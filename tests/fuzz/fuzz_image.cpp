@@ -1,6 +1,6 @@
 // Fuzzes the reading of pictures in all formats. The first byte says how: bit 0 names the file as a TGA
 // (which has no signature), bit 1 puts a PNG's checksums right, without which hardly any change would get
-// past them, and bit 2 has the rows decoded beside.
+// past them, bit 2 has the rows decoded beside, and bit 3 salvages what is there of a file.
 #include <zlib.h>
 
 #include <cstdlib>
@@ -56,8 +56,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (data[0] & 2) repair_png(bytes);
     try {
         const auto pixels = data[0] & 4 ? probewarp::Pixels::arriving : probewarp::Pixels::whole;
+        const probewarp::DecodeOptions options{.salvage = (data[0] & 8) != 0};
         const auto picture =
-            probewarp::decode_picture(std::move(bytes), data[0] & 1 ? "fuzz.tga" : "fuzz", pixels);
+            probewarp::decode_picture(std::move(bytes), data[0] & 1 ? "fuzz.tga" : "fuzz", pixels, options);
         probewarp::wait_for_rows(picture, picture.image.height);
         check(picture);
     } catch (const probewarp::Error& error) {
