@@ -74,7 +74,6 @@ Extent walk_packets(const TgaHeader& header, Bytes data, const PutRun& put_run) 
         put_run(there, rest, repeated);
         done.pixels += there;
         done.bytes += 1 + (repeated ? size : there * size);
-        if (there < count) break;
     }
     return done;
 }

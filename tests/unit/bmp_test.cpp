@@ -204,6 +204,8 @@ TEST(Bmp, RunsBeyondTheirRowAreCutOff) {
               (std::vector<Rgba>{green, green, red, red}));
     EXPECT_EQ(pixels(decode(runs(2, 2, 8, bytes({0, 3, 1, 2, 0, 0, 0, 0, 2, 2, 0, 1})))),
               (std::vector<Rgba>{green, green, red, green}));
+    EXPECT_EQ(pixels(decode(runs(2, 2, 8, bytes({0, 0, 1, 1, 9, 2, 0, 1})))),
+              (std::vector<Rgba>{red, green, blue, blue}));
 }
 
 TEST(Bmp, RunsMayEndWithoutTheirMark) {
