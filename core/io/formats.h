@@ -36,6 +36,8 @@ std::vector<std::byte> encode_bmp(const Image& image, const EncodeOptions& optio
 std::vector<std::byte> encode_tga(const Image& image, const EncodeOptions& options);
 
 bool looks_like_tga(Bytes bytes);  ///< a header that makes sense; TGA has no signature
+/// By the footer of the second version, or because the file ends exactly where its pixels do.
+bool is_surely_tga(Bytes bytes);
 
 /// The two ways in which most bad files are bad. `label`: "PNG"; `what`: a short noun phrase, plain ASCII.
 inline Error truncated(std::string_view label) {

@@ -1,8 +1,11 @@
 // GIF's first frame, by hand: stb_image spends minutes on a stream that names strings beyond the frame
-// (lzw.h).
+// (lzw.h). What follows that frame is not looked at.
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <vector>
 
+#include "io/colours.h"
 #include "io/formats.h"
 #include "io/lzw.h"
 
@@ -10,70 +13,116 @@ namespace probewarp {
 
 namespace {
 
-struct GifFrame {
-    std::size_t at = 0;  // its image descriptor in the file; 0: none was found
-    int transparent = -1;
+/// The data of a block, in sub-blocks of up to 255 bytes of which the last is empty.
+class SubBlocks {
+  public:
+    /// at: the first sub-block's length
+    SubBlocks(Bytes file, std::size_t at) : file_(file), at_(at) {}
+
+    /// -1 at the end.
+    int next() {
+        if (left_ == 0 && !ended_) {
+            left_ = at_ < file_.size() ? u8(file_, at_++) : 0;
+            ended_ = left_ == 0;
+        }
+        if (ended_ || at_ >= file_.size()) return -1;
+        --left_;
+        return int(u8(file_, at_++));
+    }
+
+    bool at_end_of_file() const { return at_ >= file_.size(); }
+
+    /// What follows the last sub-block.
+    std::size_t skip() {
+        while (!ended_ && !at_end_of_file()) {
+            at_ += left_;
+            left_ = at_end_of_file() ? 0 : u8(file_, at_++);
+            ended_ = left_ == 0;
+        }
+        return at_;
+    }
+
+  private:
+    Bytes file_;
+    std::size_t at_, left_ = 0;
+    bool ended_ = false;
 };
 
-/// From a block's first sub-block to what follows its last one.
-std::size_t skip_sub_blocks(Bytes bytes, std::size_t at) {
-    for (;;) {
-        if (at >= bytes.size()) throw truncated("GIF");
-        const std::size_t size = u8(bytes, at);
-        at += 1 + size;
-        if (size == 0) return at;
-    }
-}
+std::size_t palette_bytes(std::uint32_t flags) { return flags & 0x80 ? std::size_t{6} << (flags & 7) : 0; }
 
-std::size_t gif_palette_bytes(std::uint32_t flags) {
-    return flags & 0x80 ? std::size_t{6} << (flags & 7) : 0;
-}
-
-/// Walks the blocks up to the trailer, through all frames, and returns the first. Throws where the file ends
-/// before.
-GifFrame survey_gif(Bytes bytes) {
-    if (bytes.size() < 13) throw truncated("GIF");
-    GifFrame first;
+/// The first frame, and what the extensions before it say.
+struct Frame {
+    std::size_t at = 0;  // its image descriptor in the file
     int transparent = -1;
-    for (std::size_t at = 13 + gif_palette_bytes(u8(bytes, 10));;) {
-        if (at >= bytes.size()) throw truncated("GIF");
-        const std::uint32_t tag = u8(bytes, at);
-        if (tag == 0x3B) return first;
-        if (tag == 0x21) {
-            // A graphic control extension: size 4, flags, delay, transparent colour.
-            if (bytes.size() - at > 7 && u8(bytes, at + 1) == 0xF9 && u8(bytes, at + 2) == 4)
-                transparent = u8(bytes, at + 3) & 1 ? int(u8(bytes, at + 6)) : -1;
-            at = skip_sub_blocks(bytes, at + 2);
-        } else if (tag == 0x2C) {
-            if (first.at == 0) first = {at, transparent};
-            transparent = -1;
-            if (bytes.size() - at < 10) throw truncated("GIF");
-            at = skip_sub_blocks(bytes, at + 11 + gif_palette_bytes(u8(bytes, at + 9)));
+    std::vector<std::byte> icc;
+};
+
+std::vector<std::byte> read_profile(Bytes file, std::size_t at) {
+    std::vector<std::byte> profile;
+    SubBlocks blocks(file, at);
+    for (int byte = blocks.next(); byte >= 0 && profile.size() <= max_icc_bytes; byte = blocks.next())
+        profile.push_back(std::byte(byte));
+    return rgb_profile(profile);
+}
+
+/// `extension`: the bytes from the block's mark on.
+void read_extension(Bytes file, std::size_t at, Frame& frame) {
+    const Bytes extension = file.subspan(at);
+    // A graphic control extension: size 4, flags, delay, transparent colour.
+    if (extension.size() > 7 && begins_with(extension.subspan(1), "\xF9\4"))
+        frame.transparent = u8(extension, 3) & 1 ? int(u8(extension, 6)) : -1;
+    if (extension.size() > 14 && begins_with(extension.subspan(1), "\xFF\x0BICCRGBG1012"))
+        frame.icc = read_profile(file, at + 14);
+}
+
+/// Walks the blocks up to the first frame. Bytes between blocks that begin none are passed over, as all
+/// other readers do.
+Frame find_frame(Bytes file) {
+    if (file.size() < 13) throw truncated("GIF");
+    Frame frame;
+    for (std::size_t at = 13 + palette_bytes(u8(file, 10));;) {
+        if (at >= file.size()) throw truncated("GIF");
+        const std::uint32_t mark = u8(file, at);
+        if (mark == 0x3B) throw damaged("GIF", "there is no picture in it");
+        if (mark == 0x21) {
+            read_extension(file, at, frame);
+            at = SubBlocks(file, at + 2).skip();
+        } else if (mark == 0x2C) {
+            // The descriptor, the frame's palette, and the length of the codes.
+            if (file.size() - at < 10 || file.size() - at < 11 + palette_bytes(u8(file, at + 9)))
+                throw truncated("GIF");
+            frame.at = at;
+            return frame;
         } else {
-            throw damaged("GIF", "it has a block of an unknown kind");
+            ++at;
         }
     }
 }
 
-/// The frame's colour numbers, in the order in which they are stored. `at`: the LZW stream's first byte.
-std::vector<std::uint8_t> gif_indices(Bytes bytes, std::size_t at, std::size_t count) {
-    const int literal_bits = int(u8(bytes, at++));
-    if (literal_bits < 1 || literal_bits > 8) throw damaged("GIF", "its codes have an impossible length");
-    std::size_t left = 0;  // in this sub-block
-    const auto next_byte = [&]() -> int {
-        if (left == 0) left = u8(bytes, at++);
-        if (left == 0) return --at, -1;
-        return --left, int(u8(bytes, at++));
-    };
-    std::vector<std::uint8_t> indices(count);
-    const std::ptrdiff_t got = decode_lzw(next_byte, literal_bits, indices);
-    if (got != std::ptrdiff_t(count))
-        throw damaged("GIF", got < 0 ? "its codes make no sense" : "pixels are missing");
-    return indices;
+struct Indices {
+    std::vector<std::uint8_t> values;  // in the order in which they are stored
+    std::size_t count = 0;             // how many of them are there
+};
+
+/// `at`: the length of the LZW stream's first codes.
+Indices read_indices(Bytes file, std::size_t at, std::size_t count, const DecodeOptions& options) {
+    const int literal_bits = int(u8(file, at));
+    if (literal_bits < 1 || literal_bits > max_literal_bits)
+        throw damaged("GIF", "its codes have an impossible length");
+    Indices indices{std::vector<std::uint8_t>(count), 0};
+    SubBlocks blocks(file, at + 1);
+    const std::ptrdiff_t got = decode_lzw([&] { return blocks.next(); }, literal_bits, indices.values);
+    const bool sound = got >= 0;
+    indices.count = std::size_t(sound ? got : -1 - got);
+    if (indices.count == count || (options.salvage && indices.count > 0)) return indices;
+    if (indices.count == 0 && blocks.at_end_of_file()) throw truncated("GIF");
+    if (!sound) throw IncompleteFile(damaged("GIF", "its codes make no sense").what());
+    if (blocks.at_end_of_file()) throw incomplete("GIF");
+    throw IncompleteFile(damaged("GIF", "pixels are missing").what());
 }
 
 /// Which row of the frame the `n`th stored one of an interlaced frame is.
-std::vector<int> gif_row_order(int height, bool interlaced) {
+std::vector<int> row_order(int height, bool interlaced) {
     constexpr std::array<std::array<int, 2>, 4> passes{{{0, 8}, {4, 8}, {2, 4}, {1, 2}}};  // first row, step
     std::vector<int> rows;
     for (const auto& [first, step] : passes)
@@ -82,33 +131,64 @@ std::vector<int> gif_row_order(int height, bool interlaced) {
     return rows;
 }
 
-}  // namespace
+/// Grey: the number of a colour is its brightness, for a file without a palette.
+std::array<std::byte, 768> grey_palette() {
+    std::array<std::byte, 768> grey{};
+    for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = std::byte(i / 3);
+    return grey;
+}
 
-Image decode_gif(Bytes bytes, const DecodeOptions&) {
-    const GifFrame frame = survey_gif(bytes);
-    check_image_size(le16(bytes, 6), le16(bytes, 8), 8);
-    if (frame.at == 0) throw damaged("GIF", "there is no picture in it");
-    const std::size_t left = le16(bytes, frame.at + 1), top = le16(bytes, frame.at + 3);
-    const std::size_t width = le16(bytes, frame.at + 5), height = le16(bytes, frame.at + 7);
-    if (left + width > le16(bytes, 6) || top + height > le16(bytes, 8) || width == 0 || height == 0)
-        throw damaged("GIF", "its first frame does not lie on its canvas");
-    const std::uint32_t flags = u8(bytes, frame.at + 9);
-    const std::size_t local = gif_palette_bytes(flags), global = gif_palette_bytes(u8(bytes, 10));
-    const Bytes palette = local ? bytes.subspan(frame.at + 10, local) : bytes.subspan(13, global);
+struct Rectangle {
+    std::size_t left, top, width, height;
+};
 
-    const std::vector<std::uint8_t> indices = gif_indices(bytes, frame.at + 10 + local, width * height);
-    Image image = blank_image(le16(bytes, 6), le16(bytes, 8), 8);
-    auto from = indices.begin();
-    // What the frame does not cover, and colours that the palette does not have, stay transparent.
-    for (const int row : gif_row_order(int(height), flags & 0x40)) {
-        std::size_t to = ((top + std::size_t(row)) * std::size_t(image.width) + left) * 4;
-        for (std::size_t x = 0; x < width; ++x, ++from, to += 4) {
-            const std::size_t colour = std::size_t{*from} * 3;
+/// What the frame does not cover, and colours that the palette does not have, stay transparent.
+void place(const Indices& indices, const Rectangle& where, bool interlaced, Bytes palette, int transparent,
+           Image& image) {
+    std::vector<std::uint8_t>& rgba = samples_8(image);
+    std::size_t from = 0;
+    for (const int row : row_order(int(where.height), interlaced)) {
+        std::size_t to = ((where.top + std::size_t(row)) * std::size_t(image.width) + where.left) * 4;
+        for (std::size_t x = 0; x < where.width && from < indices.count; ++x, ++from, to += 4) {
+            const std::size_t index = indices.values[from], colour = index * 3;
             if (colour >= palette.size()) continue;
-            for (std::size_t c = 0; c < 3; ++c) samples_8(image)[to + c] = std::uint8_t(palette[colour + c]);
-            samples_8(image)[to + 3] = int(*from) == frame.transparent ? 0 : 255;
+            for (std::size_t c = 0; c < 3; ++c) rgba[to + c] = std::uint8_t(palette[colour + c]);
+            rgba[to + 3] = int(index) == transparent ? 0 : 255;
         }
     }
+}
+
+/// A pixel's width over its height is (value + 15) / 64, unless the value is 0; square pixels need no word.
+std::optional<Resolution> aspect_of(std::uint32_t value) {
+    if (value == 0 || value + 15 == 64) return {};
+    return Resolution{64, value + 15};
+}
+
+}  // namespace
+
+Image decode_gif(Bytes file, const DecodeOptions& options) {
+    const Frame frame = find_frame(file);
+    const Rectangle rectangle{le16(file, frame.at + 1), le16(file, frame.at + 3), le16(file, frame.at + 5),
+                              le16(file, frame.at + 7)};
+    if (rectangle.width == 0 || rectangle.height == 0) throw damaged("GIF", "its first frame is empty");
+    // The canvas holds the frame even where it is said to be smaller.
+    const auto width = std::max<std::size_t>(le16(file, 6), rectangle.left + rectangle.width);
+    const auto height = std::max<std::size_t>(le16(file, 8), rectangle.top + rectangle.height);
+    check_image_size((long long)(width), (long long)(height), 8);
+
+    const std::uint32_t flags = u8(file, frame.at + 9);
+    const std::size_t local = palette_bytes(flags), global = palette_bytes(u8(file, 10));
+    const std::array<std::byte, 768> grey = grey_palette();
+    const Bytes palette = local    ? file.subspan(frame.at + 10, local)
+                          : global ? file.subspan(13, global)
+                                   : Bytes(grey);
+    const std::size_t pixels = rectangle.width * rectangle.height;
+    const Indices indices = read_indices(file, frame.at + 10 + local, pixels, options);
+    Image image = blank_image((long long)(width), (long long)(height), 8);
+    place(indices, rectangle, (flags & 0x40u) != 0, palette, frame.transparent, image);
+    image.incomplete = indices.count < pixels;
+    image.description.icc = frame.icc;
+    image.description.aspect = aspect_of(u8(file, 12));
     return image;
 }
 

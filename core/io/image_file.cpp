@@ -10,6 +10,7 @@
 #include "io/naming_errors.h"
 #include "io/printable.h"
 #include "io/row_reader.h"
+#include "io/unread_formats.h"
 
 namespace probewarp {
 
@@ -24,20 +25,26 @@ constexpr std::array bmp_endings{string_view(".bmp"), string_view(".dib")};
 constexpr std::array gif_endings{string_view(".gif")};
 constexpr std::array psd_endings{string_view(".psd"), string_view(".psb")};
 constexpr std::array pnm_endings{string_view(".ppm"), string_view(".pgm"), string_view(".pbm"),
-                                 string_view(".pnm")};
-constexpr std::array tga_endings{string_view(".tga")};
+                                 string_view(".pnm"), string_view(".pam"), string_view(".pfm")};
+constexpr std::array tga_endings{string_view(".tga"), string_view(".vda"), string_view(".icb"),
+                                 string_view(".vst")};
 
 bool is_png(Bytes bytes) { return begins_with(bytes, "\x89PNG\r\n\x1a\n"); }
 bool is_jpeg(Bytes bytes) { return begins_with(bytes, "\xff\xd8\xff"); }
-bool is_bmp(Bytes bytes) { return begins_with(bytes, "BM"); }
+bool is_bmp(Bytes bytes) {
+    const bool of_os2 = begins_with(bytes, "BA") && bytes.size() >= 16;  // an array of bitmaps
+    return begins_with(bytes, "BM") || (of_os2 && begins_with(bytes.subspan(14), "BM"));
+}
 bool is_gif(Bytes bytes) { return begins_with(bytes, "GIF87a") || begins_with(bytes, "GIF89a"); }
 bool is_psd(Bytes bytes) { return begins_with(bytes, "8BPS"); }
 bool is_pnm(Bytes bytes) {
-    if (bytes.size() < 3 || u8(bytes, 0) != 'P' || u8(bytes, 1) < '1' || u8(bytes, 1) > '6') return false;
-    return string_view(" \t\r\n\v\f#").find(char(u8(bytes, 2))) != string_view::npos;
+    if (bytes.size() < 3 || u8(bytes, 0) != 'P') return false;
+    return string_view("1234567Ff").find(char(u8(bytes, 1))) != string_view::npos &&
+           string_view(" \t\r\n\v\f#").find(char(u8(bytes, 2))) != string_view::npos;
 }
 
-// TGA stands last: it has no signature, so it is tried only for a file that nothing else claims.
+// TGA stands last: it has no signature, so it is tried only for a file that nothing else claims. Where the
+// file's name does not say so, the whole of it has to be a TGA's.
 constexpr std::array<ImageFormat, 7> formats{{
     {"png", "PNG", png_endings, is_png, decode_png, read_png_rows, encode_png},
     {"jpeg", "JPEG", jpeg_endings, is_jpeg, decode_jpeg, read_jpeg_rows, encode_jpeg},
@@ -53,10 +60,12 @@ constexpr std::array<CompressionName, 3> compression_names{{{"fast", "Fast", Com
                                                             {"small", "Small", Compression::small}}};
 
 const ImageFormat* recognised_format(Bytes bytes, const std::string& name) {
-    for (const ImageFormat& format : formats)
-        if (format.recognise(bytes) && (format.name != "tga" || image_format_of(name) == &format))
-            return &format;
-    return nullptr;
+    const auto fits = [&](const ImageFormat& format) {
+        if (format.name != "tga") return format.recognise(bytes);
+        return image_format_of(name) == &format ? format.recognise(bytes) : is_surely_tga(bytes);
+    };
+    const auto found = std::find_if(formats.begin(), formats.end(), fits);
+    return found == formats.end() ? nullptr : &*found;
 }
 
 std::string name_without_folder(const std::string& name) {
@@ -117,8 +126,9 @@ Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pi
     const std::string called = printable(name);
     const ImageFormat* format = recognised_format(bytes, name);
     if (!format)
-        throw Error(called +
-                    ": is not a picture that can be read; expected PNG, JPEG, BMP, TGA, GIF, PSD or PNM");
+        throw Error(called + ": " +
+                    unread_format(bytes).value_or("is not a picture that can be read; expected " +
+                                                  std::string(readable_formats)));
     Picture picture{{}, name_without_folder(name), std::string(format->name), std::move(bytes), nullptr};
     naming_errors(name, [&] {
         if (pixels == Pixels::whole || !format->read_rows || options.salvage) {

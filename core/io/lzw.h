@@ -3,15 +3,20 @@
 // by the frame's pixels.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 namespace probewarp {
 
+/// A picture needs no more than 8, but some writers take more, and other readers follow them.
+inline constexpr int max_literal_bits = 11;
+
 /// Decodes into `out` until it is full, the stream's end code comes, or the bytes end. `next_byte()` gives a
-/// byte or -1; `literal_bits`: 1 to 8. Returns how many of `out` were written, or -1 where a code makes no
-/// sense.
+/// byte or -1; `literal_bits`: 1 to max_literal_bits. Of a value, the lower eight bits are kept. Returns how
+/// many of `out` were written, or -1 minus that number where the code after them makes no sense.
 template <class NextByte>
 std::ptrdiff_t decode_lzw(NextByte next_byte, int literal_bits, std::span<std::uint8_t> out) {
     constexpr int table_size = 4096;
@@ -30,7 +35,7 @@ std::ptrdiff_t decode_lzw(NextByte next_byte, int literal_bits, std::span<std::u
     while (done < out.size()) {
         while (bit_count < width) {
             const int byte = next_byte();
-            if (byte < 0) return std::ptrdiff_t(done);
+            if (byte < 0) return std::ptrdiff_t(std::min(done, out.size()));
             bits |= std::uint32_t(byte) << bit_count;
             bit_count += 8;
         }
@@ -44,7 +49,7 @@ std::ptrdiff_t decode_lzw(NextByte next_byte, int literal_bits, std::span<std::u
             continue;
         }
         // A code one ahead of the table stands for the previous string and its own first value.
-        if (code > next || (code == next && previous < 0)) return -1;
+        if (code > next || (code == next && previous < 0)) return -1 - std::ptrdiff_t(done);
         if (previous >= 0 && next < table_size) {
             const std::size_t n = std::size_t(next), p = std::size_t(previous);
             prefix[n] = std::uint16_t(previous);

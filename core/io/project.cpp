@@ -13,6 +13,7 @@
 #include "io/paint_file.h"
 #include "io/printable.h"
 #include "io/project_fields.h"
+#include "io/unread_formats.h"
 #include "io/zip_archive.h"
 
 namespace probewarp {
@@ -268,6 +269,7 @@ struct Opened {
 };
 
 Opened open_project(std::vector<std::byte> bytes) {
+    if (const auto what = unread_archive(bytes)) throw Error(*what);
     Archive archive = open_archive(bytes);
     bytes = {};  // the picture's pixels need the room
     Parsed parsed = parse_project(archive.bytes_of("project.json"));

@@ -58,15 +58,24 @@ def images():
     plain = bytes.fromhex(JPEG)
     yield "jpg", plain
     yield "jpg", plain[:20] + bytes.fromhex(EXIF) + plain[20:]
-    for data in files.bmp(5, 3), files.bmp(3, -2), files.bmp(5, 3, 8), files.bmp(2, 2, 32):
+    for data in (files.bmp(5, 3), files.bmp(3, -2), files.bmp(5, 3, 8), files.bmp(2, 2, 32), files.bmp_of_runs(),
+                 files.bmp_of_masks(), files.bmp_of_os2()):
         yield "bmp", data
-    for data in files.tga(5, 4), files.tga(9, 5, True):
+    for data in files.tga(5, 4), files.tga(9, 5, True), files.tga_of_palette(), files.tga_of_palette(True):
         yield "tga", data
+        yield "any name", data
     yield "gif", files.gif(12, 10)
     for data in [files.psd(5, 3), files.psd(9, 3, True), files.psd(3, 2, bits=16)] + list(files.PSD.values()):
         yield "psd", data
     for data in files.PNM.values():
         yield "ppm", data
+
+
+def cut_images():
+    """Of formats that are salvaged: what is left of a file that lost its end."""
+    for ending, data in images():
+        if ending in ("bmp", "tga", "gif", "ppm"):
+            yield ending, data[: len(data) - 2 - len(data) // 8]
 
 
 def csvs():
@@ -89,6 +98,7 @@ def main(folder):
     kinds = {"tga": 1, "png": 2}
     seeds = [bytes([kinds.get(ending, 0)]) + data for ending, data in [*images(), *described_images()]]
     seeds += [bytes([kinds.get(ending, 0) | 8]) + data for ending, data in salvaged_images()]
+    seeds += [bytes([kinds["tga"] | 8 if ending == "tga" else 8]) + data for ending, data in cut_images()]
     for i, data in enumerate(seeds):
         save(os.path.join(folder, "image"), data, i)
     text = json.dumps(files.fields()).encode()

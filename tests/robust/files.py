@@ -71,6 +71,43 @@ def bmp(width, height, bits=24):
             + palette + pixels)
 
 
+def bmp_of_runs():
+    """RLE8, 6 x 2: runs, pixels one by one, and a step over others."""
+    palette, runs = bytes(range(12)), b"\x03\x01\x00\x03\x02\x01\x00\x63\x00\x00\x01\x02\x00\x02\x03\x00\x02\x01\x00\x01"
+    start = 54 + len(palette)
+    return (b"BM" + struct.pack("<IHHI", start + len(runs), 0, 0, start)
+            + struct.pack("<IiiHHIIIIII", 40, 6, 2, 1, 8, 1, len(runs), 2835, 2835, 3, 0) + palette + runs)
+
+
+def bmp_of_masks():
+    """Three masks of ten bits, and the longest header, with a profile behind the pixels."""
+    pixels, profile = bytes(range(40, 64)), bytes(200)
+    header = struct.pack("<IiiHHIIIIIIIIII", 124, 3, 2, 1, 32, 3, len(pixels), 2835, 2835, 0, 0, 0x3FF, 0xFFC00,
+                         0x3FF00000, 0xC0000000) + b"DEBM" + bytes(48)
+    header += struct.pack("<IIII", 4, 124 + len(pixels), len(profile), 0)
+    return b"BM" + struct.pack("<IHHI", 138 + len(pixels) + len(profile), 0, 0, 138) + header + pixels + profile
+
+
+def bmp_of_os2():
+    """Two bits a pixel, and a header that ends early."""
+    start, pixels = 14 + 16 + 16, bytes(range(4, 12))
+    return (b"BM" + struct.pack("<IHHI", start + len(pixels), 0, 0, start) + struct.pack("<IIIHH", 16, 9, 2, 1, 2)
+            + bytes(range(16)) + pixels)
+
+
+def tga_of_palette(signed=False):
+    """Numbers of 16 bits in runs; signed: with what the second version appends."""
+    file = (struct.pack("<BBBHHBHHHHBB", 3, 1, 9, 5, 2, 16, 0, 0, 2, 3, 16, 0x21) + b"an!" + b"\1\2\3\x84"
+            + b"\x84\x06\0\0\x05\0")
+    if not signed:
+        return file
+    extension = bytearray(495)
+    struct.pack_into("<H", extension, 0, 495)
+    struct.pack_into("<HHHH", extension, 474, 2, 1, 22, 10)
+    extension[494] = 4
+    return file + bytes(extension) + struct.pack("<II", len(file), 0) + b"TRUEVISION-XFILE.\0"
+
+
 def tga(width, height, packed=False):
     header = struct.pack("<BBBHHBHHHHBB", 0, 0, 10 if packed else 2, 0, 0, 0, 0, 0, width, height, 24, 0x20)
     if packed:
@@ -146,7 +183,15 @@ PNM = {
     "p5.pgm": b"P5 3 2 255\nabcdef",
     "p5-16.pgm": b"P5 2 2 65535\nabcdefgh",
     "p6.ppm": b"P6 2 2 255\nabcdefghijkl",
+    "p7.pam": b"P7\nWIDTH 2\nHEIGHT 2\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\nabcdefghijklmnop",
+    "p7-16.pam": b"P7\nMAXVAL 1000\nDEPTH 2\nHEIGHT 1\nWIDTH 2\n# no type\nENDHDR\n\0\1\2\3\1\1\0\2",
+    "rgb.pfm": b"PF\n2 1\n-1.0\n" + struct.pack("<6f", 0, 0.25, 0.5, 1, 2, -1),
+    "grey.pfm": b"Pf 1 2 1\n" + struct.pack(">2f", 0.75, 0.1),
 }
+
+# Bytes at their ends that these can do without: the rest of the end code, an empty sub-block and the trailer; the end
+# mark; what follows the last pixel.
+SPARE = {"small.gif": 3, "runs.bmp": 2, "masks.bmp": 200, "signed.tga": 495 + 26}
 
 MIMETYPE = b"application/x-probewarp"
 PIXEL = PNM["p6.ppm"]
@@ -231,7 +276,9 @@ def sound(program, folder):
         ("rgba16.png", png(3, 3, 16, 6)), ("palette.png", png(6, 4, 2, 3)), ("interlaced.png", png(7, 6, 8, 2, 1)),
         ("bits.png", png(9, 4, 1, 0)), ("described.png", described_png()),
         ("rgb.bmp", bmp(5, 3)), ("down.bmp", bmp(3, -2)), ("palette.bmp", bmp(5, 3, 8)),
+        ("runs.bmp", bmp_of_runs()), ("masks.bmp", bmp_of_masks()), ("os2.bmp", bmp_of_os2()),
         ("raw.tga", tga(5, 4)), ("packed.tga", tga(9, 5, True)),
+        ("palette.tga", tga_of_palette()), ("signed.tga", tga_of_palette(True)),
         ("small.gif", gif(12, 10)), ("raw.psd", psd(5, 3)), ("packed.psd", psd(9, 3, True)), ("deep.psd", psd(3, 2, bits=16)),
         ("hand.probewarp", project()), ("painted.probewarp", archive(painted_members())),
     ] + list(PSD.items()) + list(PNM.items())
