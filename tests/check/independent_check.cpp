@@ -117,8 +117,10 @@ std::string text_of(const std::vector<Handle>& probes) {
 }
 
 std::string scratch(const std::string& name) {
+    const char* set =
+        std::getenv("PROBEWARP_INSTRUCTION_SET");  // the same test may run under several at once
     const auto folder =
-        std::filesystem::path(PROBEWARP_SCRATCH) /
+        std::filesystem::path(PROBEWARP_SCRATCH) / (set && *set != 0 ? set : "widest") /
         (std::string("check.") + testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder);
     return (folder / name).string();

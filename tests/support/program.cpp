@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "io/file.h"
 #include "io/image_file.h"
@@ -55,7 +56,10 @@ std::filesystem::path scratch_folder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     std::string name = std::string(test->test_suite_name()) + "." + test->name();
     std::replace(name.begin(), name.end(), '/', '.');
-    const std::filesystem::path folder = std::filesystem::path(PROBEWARP_SCRATCH) / name;
+    const char* set =
+        std::getenv("PROBEWARP_INSTRUCTION_SET");  // the same test may run under several at once
+    const std::filesystem::path folder =
+        std::filesystem::path(PROBEWARP_SCRATCH) / (set && *set != 0 ? set : "widest") / name;
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     return folder;

@@ -185,8 +185,11 @@ TEST(ProbesCsv, AnyEncoding) {
         }
     const std::string at_once = plain.substr(plain.find("#probes"));
     expect_as_plain("\xef\xbb\xbf" + at_once, "a mark before the line of the probes");
-    for (const bool little : {true, false})
-        expect_as_plain(utf16("sep=,\n" + at_once, little, true), "a mark before Excel's first line");
+    for (const bool little : {true, false}) {
+        expect_as_plain(utf16(at_once, little, true), "UTF-16's mark before it");
+        expect_as_plain(utf16("sep=|\n" + replaced(at_once, ",", "|"), little, true),
+                        "and Excel's first line");
+    }
     EXPECT_NE(error_in(utf16(plain, true, true).substr(1)), "");
 }
 
