@@ -42,13 +42,6 @@ def images():
         yield "ppm", data
 
 
-def cut_images():
-    """Of formats that are salvaged: what is left of a file that lost its end."""
-    for ending, data in images():
-        if ending in ("bmp", "tga", "gif", "ppm"):
-            yield ending, data[: len(data) - 2 - len(data) // 8]
-
-
 def csvs():
     head = b"#vertices ix,iy,x,y\n0,0,0,0\n#probes ix,iy,itheta,x,y,theta,radius\n"
     return [head, head + b"0,0,0,1,1,0.5,10\n", head + b"-100.5,20,0.1,1e2,-3,-6.28,120\r\n 1 , 2 , 3 , 4 , 5 , 6 , 7 \n",
@@ -65,8 +58,6 @@ def main(folder):
     for i, (ending, data) in enumerate(images()):
         # 1: as TGA; 2: checksums of a PNG are put right first.
         save(os.path.join(folder, "image"), bytes([{"tga": 1, "png": 2}.get(ending, 0)]) + data, i)
-    for i, (ending, data) in enumerate(cut_images()):
-        save(os.path.join(folder, "image"), bytes([9 if ending == "tga" else 8]) + data, 100 + i)  # 8: salvaged
     text = json.dumps(files.fields()).encode()
     seeds = [b"\0" + files.project(), b"\1" + text, b"\1" + json.dumps(dict(files.fields(), probes=[])).encode(),
              b"\0" + files.project_of(text, files.png(2, 2), "image.png"), b"\1{}"]

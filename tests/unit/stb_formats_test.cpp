@@ -266,8 +266,8 @@ TEST(Pnm, BadOnesAreRefused) {
 
 // ---- each cut of a file ----
 
-// Exceptions: a TGA's footer, whatever stands behind the codes of a GIF's first frame or a PNG's IEND, a
-// plain bitmap's last line break.
+// Exceptions: a TGA's footer, whatever stands behind a GIF's trailer or a PNG's IEND, a plain bitmap's last
+// line break.
 
 const Description described{.icc = File(50), .resolution = Resolution{1, 2}};
 
