@@ -53,8 +53,8 @@ struct ImageFormat {
     /// decode in portions; null where it decodes all at once. The bytes must outlive it.
     std::unique_ptr<RowReader> (*read_rows)(std::span<const std::byte> bytes, const DecodeOptions& options);
     /// Null where the format is only read. Throws Error. The same image and options give the same bytes. PNG
-    /// keeps everything; BMP and TGA round 16 bits to 8 and drop the profile; JPEG has the background under
-    /// it besides.
+    /// keeps everything; BMP and TGA round 16 bits to 8, and TGA drops the profile; JPEG has the background
+    /// under it besides.
     std::vector<std::byte> (*encode)(const Image& image, const EncodeOptions& options);
 };
 
@@ -74,9 +74,9 @@ enum class Pixels {
 };
 
 /// Decodes the bytes of an image file, whatever its ending says; `name` is what errors call it, and its
-/// ending is asked only for TGA, which has no signature. Throws Error, or IncompleteFile where salvaging
-/// would open it: "NAME: what is wrong; what is expected". What is salvaged is whole when it is handed over,
-/// and its original is a PNG made of it, so that a project with it opens again.
+/// ending is asked only for a TGA that is not surely one, since TGA has no signature. Throws Error, or
+/// IncompleteFile where salvaging would open it: "NAME: what is wrong; what is expected". What is salvaged is
+/// whole when it is handed over, and its original is a PNG made of it, so that a project with it opens again.
 Picture decode_picture(std::vector<std::byte> bytes, const std::string& name, Pixels pixels = Pixels::whole,
                        const DecodeOptions& options = {});
 
