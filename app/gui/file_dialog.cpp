@@ -191,7 +191,11 @@ void draw_entries(App& app, float height) {
             const ImVec2 at = ImGui::GetCursorScreenPos();
             const float right = at.x + ImGui::GetContentRegionAvail().x;
             const bool picked = !entry.is_folder && dialog.name.meant() == entry.path;
-            if (ImGui::Selectable("##entry", picked, 0, {0, row})) clicked = std::size_t(i);
+            // By the press: until the release another item may have taken the mouse, the name's field for
+            // one.
+            const bool by_key =
+                ImGui::Selectable("##entry", picked, 0, {0, row}) && !ImGui::IsMouseReleased(0);
+            if (by_key || (ImGui::IsItemHovered() && ImGui::IsMouseClicked(0))) clicked = std::size_t(i);
             draw_entry(app, entry, at, right);
             ImGui::PopID();
         }

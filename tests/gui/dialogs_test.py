@@ -52,14 +52,14 @@ class DialogsTest(unittest.TestCase):
         desk.settle()
 
     def click(self, desk, place, count=1):
-        desk.ask("mousemove", *place, "sleep", "0.1", "click", "--repeat", count, "--delay", "60", "1")
+        desk.ask("mousemove", *place, "sleep", "0.1", "click", "--repeat", count, "--delay", "150", "1")
         desk.settle()
 
     def hidden(self):
         return [path for path in self.pictures.rglob(".*")]
 
     def test_a_double_click_on_a_folder_enters_it_and_does_no_more(self):
-        for count in (2, 3, 4):
+        for count in (2, 4):
             desk = self.desk(files=["sub/a.png", "sub/b.png", "top.png"])
             self.list(desk, self.pictures)
             self.click(desk, ROW(0), count)
