@@ -18,7 +18,7 @@ class JpegRows;
 /// the others keep all to the end.
 class ImageEncoding {
   public:
-    /// format: one that is written. like: has the image's size, depth, profile and resolution; its pixels are
+    /// format: one that is written. like: has the image's size, depth and description; its pixels are
     /// not looked at. transparent: whether any of the image will be, as far as can be told; of use to PNG,
     /// which leaves the alpha of an opaque image out.
     ImageEncoding(const ImageFormat& format, const Image& like, const EncodeOptions& options,

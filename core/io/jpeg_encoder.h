@@ -10,7 +10,7 @@ namespace probewarp {
 
 class JpegRows {
   public:
-    /// like: has the image's size, depth, profile and resolution. Throws Error and std::bad_alloc, as all
+    /// like: has the image's size, depth and description. Throws Error and std::bad_alloc, as all
     /// here.
     JpegRows(const Image& like, const EncodeOptions& options);
     ~JpegRows();

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "io/formats.h"
+#include "io/png_chunks.h"
 
 namespace probewarp {
 
@@ -61,6 +62,8 @@ std::size_t paint_texels(std::span<const std::byte> bytes) {
 
 PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent) {
     if (!find_image_format("png")->recognise(bytes)) throw Error("is no PNG; expected a 16-bit grey one");
+    // Without its end a picture opens; our own files always have it.
+    if (!survey_png(bytes).has_end) throw truncated("PNG");
     const Image image = decode_png(bytes, {});
     PaintMap map = empty_paint_map(image.width, image.height, extent);
     std::map<Texel, std::shared_ptr<const PaintTile>> uniform;  // tiles of one value, each made once

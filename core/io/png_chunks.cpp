@@ -19,25 +19,22 @@ namespace probewarp {
 namespace {
 
 constexpr std::size_t signature_bytes = 8;
-constexpr unsigned indexed = 3;  // a colour type: IHDR, section 11.2.1
+constexpr std::size_t checksum_bytes = 4;  // of a chunk; nobody looks at those that are made up
+constexpr unsigned indexed = 3;            // a colour type: IHDR, section 11.2.1
 
 /// One chunk, as far as it is there.
 struct Chunk {
     Bytes all;           ///< from its length to its checksum
     Bytes type, data;    ///< data: what is there of it
-    bool whole = false;  ///< all of its data are there
+    bool whole = false;  ///< all of it is there
 
     bool is(std::string_view name) const {
         return std::ranges::equal(type, name, [](std::byte a, char b) { return a == std::byte(b); });
     }
     bool is_critical() const { return (u8(type, 0) & 0x20u) == 0; }
 
-    bool has_checksum() const { return all.size() == data.size() + 12; }
-    /// Where the file ends before the checksum there is nothing that speaks against the data.
     bool is_sound() const {
-        if (!whole) return false;
-        return !has_checksum() ||
-               libdeflate_crc32(0, type.data(), 4 + data.size()) == be32(all, all.size() - 4);
+        return whole && libdeflate_crc32(0, type.data(), 4 + data.size()) == be32(all, all.size() - 4);
     }
 };
 
@@ -54,7 +51,7 @@ std::optional<Chunk> chunk_at(Bytes file, std::size_t at) {
     if (length > 0x7FFFFFFF || !std::ranges::all_of(type, is_letter)) return {};
     const Bytes data = rest.subspan(8, std::min(length, rest.size() - 8));
     const Bytes all = rest.first(std::min(length + 12, rest.size()));
-    return Chunk{all, type, data, data.size() == length};
+    return Chunk{all, type, data, all.size() == length + 12};
 }
 
 // ---- what the file says of its colours and itself ----
@@ -151,7 +148,7 @@ class Survey {
         } else if (chunk.is("IDAT")) {
             take_pixels(chunk);
         } else if (chunk.is("IEND")) {
-            found_.has_end = true;
+            found_.has_end = chunk.whole;
             end_ = chunk;
             return false;
         } else if (chunk.is_critical()) {
@@ -165,7 +162,7 @@ class Survey {
     PngFile finish() {
         if (!header_) throw truncated("PNG");
         if (!begun_) throw found_.has_end ? damaged("PNG", "it has no pixels") : truncated("PNG");
-        if (end_ && end_->data.empty() && end_->has_checksum())
+        if (end_ && end_->data.empty() && end_->whole)
             add(end_->all);
         else
             make_chunk("IEND", {});
@@ -177,7 +174,7 @@ class Survey {
     void take_header(const Chunk& chunk) {
         if (!chunk.is("IHDR") || (chunk.whole && chunk.data.size() != 13))
             throw damaged("PNG", "it does not start with IHDR");
-        if (!chunk.whole || !chunk.has_checksum()) throw truncated("PNG");
+        if (!chunk.whole) throw truncated("PNG");
         require_sound(chunk);
         // Before libspng sees it, which would only say that some limit is exceeded.
         check_image_size(be32(chunk.data, 0), be32(chunk.data, 4), u8(chunk.data, 8) == 16 ? 16 : 8);
@@ -221,11 +218,10 @@ class Survey {
             found_.end = PngEnd::cut;
             add(keep(chunk_head("IDAT", chunk.data.size())));
             add(chunk.data);
-            return add(no_checksum(4));
+            return add(keep(std::vector<std::byte>(checksum_bytes)));
         }
         if (!chunk.is_sound()) found_.end = PngEnd::damaged;
         add(chunk.all);
-        add(no_checksum(chunk.data.size() + 12 - chunk.all.size()));
     }
 
     /// Of what comes before the pixels, what libspng needs, in the order that it wants.
@@ -296,9 +292,6 @@ class Survey {
     }
 
     Bytes keep(std::vector<std::byte> bytes) { return found_.made.emplace_back(std::move(bytes)); }
-    /// That many bytes in a checksum's place, at which nobody looks.
-    Bytes no_checksum(std::size_t bytes) { return keep(std::vector<std::byte>(bytes)); }
-
     static std::vector<std::byte> chunk_head(std::string_view type, std::size_t length) {
         std::vector<std::byte> head;
         for (int shift = 24; shift >= 0; shift -= 8) head.push_back(std::byte(length >> shift & 0xFF));
@@ -309,8 +302,8 @@ class Survey {
     void make_chunk(std::string_view type, Bytes data) {
         std::vector<std::byte> chunk = chunk_head(type, data.size());
         chunk.insert(chunk.end(), data.begin(), data.end());
+        chunk.resize(chunk.size() + checksum_bytes);
         add(keep(std::move(chunk)));
-        add(no_checksum(4));
     }
 
     PngFile found_;

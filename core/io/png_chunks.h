@@ -33,7 +33,7 @@ struct PngFile {
     std::deque<std::vector<std::byte>> made;  ///< what of the parts does not stand in the file
     std::size_t idat_bytes = 0;
     bool transparent = false;  ///< there is a tRNS
-    bool has_end = false;      ///< there is an IEND
+    bool has_end = false;      ///< there is an IEND, whole
     PngEnd end = PngEnd::whole;
     Description description;
     int orientation = 1;  ///< EXIF's, 1 to 8

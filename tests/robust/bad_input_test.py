@@ -633,7 +633,7 @@ class BadFiles(unittest.TestCase):
         for path in csv, self.place("pipe.csv"), "/dev/zero", self.place("missing.csv"):
             self.refused("good.png", None, named=path, options=["--probes", path])
             self.refused("good.png", None, named=path, options=["--image", path])
-        write(self.place("bad.png"), files.png(4, 4)[:-3])
+        write(self.place("bad.png"), files.png(4, 4)[:-13])
         self.refused("good.png", None, named=self.place("bad.png"), options=["--image", self.place("bad.png")])
         write(self.place("project.probewarp"), files.project())
         path = self.place("project.probewarp")

@@ -38,12 +38,12 @@ def png(width, height, bits=8, colour=6, interlaced=0, extra=b"", seed=7):
 
 
 def behind_the_pixels(data):
-    """How many bytes of a PNG, from its end, stand behind its pixels' data."""
+    """How many bytes of a PNG, from its end, stand behind its pixels."""
     at = 8
     while at < len(data):
         length, kind = struct.unpack_from(">I4s", data, at)
         if kind == b"IDAT":
-            end = at + 8 + length
+            end = at + 12 + length
         at += 12 + length
     return len(data) - end
 

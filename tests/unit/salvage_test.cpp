@@ -249,8 +249,8 @@ TEST(Salvage, OfAProgressiveJpegIsItsScans) {
 TEST(Salvage, OfAJpegDamagedAmidIsWhatLibjpegMakesOfIt) {
     const File sound = noisy_jpeg(80, 160, [](jpeg_compress_struct& j) { j.restart_interval = 5; });
     const Image whole = decode(sound);
-    // Ones without end, which no code is; the zero behind a 255 says that it is no marker. And markers of which
-    // nobody knows how long their segments would be.
+    // Ones without end, which no code is; the zero behind a 255 says that it is no marker. And markers of
+    // which nobody knows how long their segments would be.
     const File ones = bytes({0xFF, 0, 0xFF, 0, 0xFF, 0, 0xFF, 0});
     for (const File& damage : {ones, join({ones, bytes({0xFF, 0x3F, 0xFF, 0x3F})})}) {
         File file = sound;
