@@ -252,6 +252,7 @@ void draw_resting(App& app, double value, const NumberField& field) {
     if (!field.bare || hovered)
         list->AddRect(from, to, hovered ? app.theme.muted : app.theme.line, app.px(5), 0, line);
     std::string text = shown_number(value, field.decimals);
+    if (text[0] == '-') text.replace(0, 1, "\u2212");
     if (field.bare && *field.unit) text += fmt::format(" {}", field.unit);
     const float width = ImGui::CalcTextSize(text.c_str()).x;
     const float left = field.bare ? to.x - width - app.px(4) : from.x + app.px(8);
