@@ -115,8 +115,6 @@ void on_focus(GLFWwindow* window, int focused) {
     push(app_of(window), {.kind = InputEvent::Kind::focus, .code = focused});
 }
 
-ImVec2 canvas_corner(const App& app) { return {app.px(look::tools), app.px(look::menu)}; }
-
 /// The pointer in canvas pixels, with the keys that are held. AltGr is no Alt: which of them the right key
 /// is, GLFW says only in an event's `mods`.
 PointerEvent pointer_event(const App& app, Button button = Button::left, int mods = 0) {
@@ -385,9 +383,12 @@ void hand_on_input(App& app) {
     Outcome outcome = Outcome::done;
     while (!input.events.empty() && !waits(app, input.events.front(), outcome)) {
         const InputEvent event = input.events.front();
+        input.events.pop_front();  // before it is taken: what fails is not tried again
         const Outcome next = take(app, event);
-        if (next == Outcome::later) break;
-        input.events.pop_front();
+        if (next == Outcome::later) {
+            input.events.push_front(event);
+            break;
+        }
         input.left = false;
         if (next != Outcome::done) outcome = next;
         if (!app.editor.requests.empty()) {  // a dialog may open, which takes the keys

@@ -24,8 +24,6 @@ namespace {
 
 App& app_of(GLFWwindow* window) { return *static_cast<App*>(glfwGetWindowUserPointer(window)); }
 
-ImVec2 canvas_corner(const App& app) { return {app.px(look::tools), app.px(look::menu)}; }
-
 /// PROBEWARP_UI_SCALE wins over what the display says.
 float wanted_scale(GLFWmonitor* monitor) {
     if (const char* text = std::getenv("PROBEWARP_UI_SCALE"))
