@@ -140,4 +140,7 @@ struct App {
     void wake() { frames_wanted = 3; }
 };
 
+/// The canvas's upper left corner, window pixels.
+inline ImVec2 canvas_corner(const App& app) { return {app.px(look::tools), app.px(look::menu)}; }
+
 }  // namespace probewarp

@@ -114,8 +114,6 @@ void on_focus(GLFWwindow* window, int focused) {
     push(app_of(window), {.kind = InputEvent::Kind::focus, .code = focused});
 }
 
-ImVec2 canvas_corner(const App& app) { return {app.px(look::tools), app.px(look::menu)}; }
-
 /// The pointer in canvas pixels, with the keys that are held. AltGr is no Alt: which of them the right key
 /// is, GLFW says only in an event's `mods`.
 PointerEvent pointer_event(const App& app, Button button = Button::left, int mods = 0) {
@@ -385,7 +383,7 @@ void hand_on_input(App& app) {
     Outcome outcome = Outcome::done;
     while (!input.events.empty() && !waits(app, input.events.front(), outcome)) {
         const InputEvent event = input.events.front();
-        input.events.pop_front();  // before it is taken: one that fails does not come again
+        input.events.pop_front();  // before it is taken: what fails is not tried again
         const Outcome next = take(app, event);
         if (next == Outcome::later) {
             input.events.push_front(event);

@@ -17,10 +17,6 @@ namespace {
 
 constexpr double drag_slack = 3;  // pixels at scale 1 that a click may tremble
 
-ImU32 warning_colour(const Theme& theme) {
-    return theme.is_light ? IM_COL32(0xa8, 0x44, 0x00, 255) : IM_COL32(0xff, 0x9d, 0x5c, 255);
-}
-
 double rounded(double value, int decimals) {
     const double unit = std::pow(10, decimals);
     return std::round(value * unit) / unit;
@@ -190,7 +186,7 @@ bool type_number(App& app, const char* name, double& value, const NumberField& f
     const float above = (app.px(look::field) - ImGui::GetFontSize()) / 2;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {app.px(field.bare ? 4 : 8), above});
     ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, app.px(1.5));
-    ImGui::PushStyleColor(ImGuiCol_Border, wrong ? warning_colour(app.theme) : app.theme.accent);
+    ImGui::PushStyleColor(ImGuiCol_Border, wrong ? app.theme.warning : app.theme.accent);
     ImGui::PushStyleColor(ImGuiCol_FrameBg, app.theme.canvas);
     ImGui::PushStyleColor(ImGuiCol_TextSelectedBg, faded(app.theme.accent, 0.35f));
     ImGui::SetNextItemWidth(field.width);
@@ -252,6 +248,7 @@ void draw_resting(App& app, double value, const NumberField& field) {
     if (!field.bare || hovered)
         list->AddRect(from, to, hovered ? app.theme.muted : app.theme.line, app.px(5), 0, line);
     std::string text = shown_number(value, field.decimals);
+    if (text[0] == '-') text.replace(0, 1, "\u2212");
     if (field.bare && *field.unit) text += fmt::format(" {}", field.unit);
     const float width = ImGui::CalcTextSize(text.c_str()).x;
     const float left = field.bare ? to.x - width - app.px(4) : from.x + app.px(8);

@@ -24,7 +24,6 @@ namespace probewarp {
 
 namespace {
 
-ImVec2 canvas_corner(const App& app) { return {app.px(look::tools), app.px(look::menu)}; }
 
 /// PROBEWARP_UI_SCALE wins over what the display says.
 float wanted_scale(GLFWmonitor* monitor) {
