@@ -13,6 +13,7 @@
 #include "io/printable.h"
 #include "io/probes_csv.h"
 #include "io/project.h"
+#include "io/same_file.h"
 
 namespace probewarp {
 
@@ -29,10 +30,8 @@ std::vector<std::string> picture_endings() {
 
 /// Whether the path is one of the files, by whatever name.
 bool leads_to_any(const fs::path& path, const std::vector<fs::path>& files) {
-    return std::any_of(files.begin(), files.end(), [&](const fs::path& file) {
-        std::error_code ignored;
-        return fs::equivalent(path, file, ignored);
-    });
+    return std::any_of(files.begin(), files.end(),
+                       [&](const fs::path& file) { return !file.empty() && is_same_file(path, file); });
 }
 
 bool is_sample(const fs::path& path) { return path.parent_path() == samples_folder(); }

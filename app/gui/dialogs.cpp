@@ -16,6 +16,7 @@
 #include "gui/shown_text.h"
 #include "gui/widgets.h"
 #include "io/image_file.h"
+#include "io/obj.h"
 
 namespace probewarp {
 
@@ -45,6 +46,12 @@ void align_buttons(const App& app, int count, float width) {
     ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - all);
 }
 
+/// All that an export to the path writes.
+std::vector<std::filesystem::path> written_files(const std::filesystem::path& path) {
+    if (is_obj(path)) return obj_files(path);
+    return {path};
+}
+
 /// What keeps the export from beginning, or nothing.
 std::string export_trouble(const App& app) {
     const ExportDialog& dialog = app.export_dialog;
@@ -57,7 +64,11 @@ std::string export_trouble(const App& app) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(path.parent_path(), ignored)) return "There is no such folder.";
     if (std::filesystem::is_directory(path, ignored)) return "This is a folder.";
-    if (is_being_read(app, path)) return "This is the file that is open here: choose another name.";
+    for (const std::filesystem::path& file : written_files(path))
+        if (is_being_read(app, file))
+            return file == path
+                       ? "This is the file that is open here: choose another name."
+                       : "Beside it the file that is open here would be written over: choose another name.";
     try {
         export_view(app.editor.deformation, dialog.settings);
     } catch (const Error& error) {

@@ -24,7 +24,6 @@ namespace probewarp {
 
 namespace {
 
-
 /// PROBEWARP_UI_SCALE wins over what the display says.
 float wanted_scale(GLFWmonitor* monitor) {
     if (const char* text = std::getenv("PROBEWARP_UI_SCALE"))
