@@ -332,4 +332,16 @@ void draw_status_bar(App& app) {
     ImGui::End();
 }
 
+void draw_makeshift(App& app) {
+    draw_menu_bar(app);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin("##makeshift", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::TextUnformatted("The picture cannot be shown now. It can be saved.");
+    if (ImGui::Button("Show it again")) app.failed_frames = 0;
+    ImGui::End();
+}
+
 }  // namespace probewarp

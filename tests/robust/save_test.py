@@ -4,8 +4,8 @@ is always the old or the new file, whole.
 
     save_test.py --program build/release/app/probewarp [unittest's options]
 
-A program that was killed by SIGKILL may leave its temporary (".NAME.*") behind; that is counted and cleaned up here. Every
-other failure has to leave nothing.
+A program that was killed by SIGKILL may leave its temporary (".NAME.*") behind; that is counted and cleaned up here (what
+the next save does about it is signals_test.py's). Every other failure has to leave nothing.
 """
 
 import argparse
