@@ -1,6 +1,8 @@
 // JPEGs of unusual kinds that are sound, and what they say of their colours and their size.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "image_checks.h"
 #include "profiles.h"
 
@@ -60,9 +62,9 @@ TEST(Jpeg, AProfileWhosePartsDoNotFitIsLeftOut) {
 
 File with_adobe_transform(File file, int transform) {
     const File name = bytes_of("Adobe");
-    const auto at = std::ranges::search(file, name);
-    EXPECT_FALSE(at.empty());
-    if (!at.empty()) at.begin()[11] = std::byte(transform);
+    const auto at = std::search(file.begin(), file.end(), name.begin(), name.end());
+    EXPECT_NE(at, file.end());
+    if (at != file.end()) at[11] = std::byte(transform);
     return file;
 }
 
@@ -196,7 +198,8 @@ TEST(Jpeg, BytesBetweenMarkersAreHarmless) {
 TEST(Jpeg, UnusualKindsAreNamed) {
     File file = rgb_jpeg();
     const File frame = bytes({0xFF, 0xC0});
-    const auto at = std::size_t(std::ranges::search(file, frame).begin() - file.begin());
+    const auto at =
+        std::size_t(std::search(file.begin(), file.end(), frame.begin(), frame.end()) - file.begin());
     file[at + 4] = std::byte{12};
     expect_refused(file, "a.jpg", "is of an unusual kind (Unsupported JPEG data precision 12)");
     file[at + 4] = std::byte{8};

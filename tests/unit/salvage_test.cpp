@@ -157,7 +157,7 @@ TEST(Salvage, OfAnInterlacedPngShowsEachPixelInItsNeighboursPlaces) {
     const Image whole = decode(file);
     EXPECT_EQ(salvaged(file).rgba, whole.rgba) << "nothing is missing";
     int error_before = 1 << 30;
-    for (const std::size_t percent : {40, 60, 80, 95}) {
+    for (const std::size_t percent : {40u, 60u, 80u, 95u}) {
         const File cut = first(file, file.size() * percent / 100);
         ASSERT_EQ(fate(cut), Fate::incomplete);
         const Image part = salvaged(cut);
