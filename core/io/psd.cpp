@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "io/colours.h"
+#include "io/exif.h"
 #include "io/formats.h"
 #include "io/psd_parts.h"
 
@@ -46,6 +47,7 @@ Image decode_psd(Bytes bytes, const DecodeOptions& options) {
     image.description.icc = rgb_profile(profile_of_pixels(psd));
     image.description.resolution = psd.resolution;
     image.description.aspect = psd.aspect;
+    image.description.exif = parse_exif(psd.exif).block;  // Photoshop has turned the pixels already
     return image;
 }
 

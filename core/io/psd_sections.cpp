@@ -159,6 +159,9 @@ void read_resource(std::uint32_t id, Bytes data, double& aspect, Psd& psd) {
         case 1057:  // a version, and then whether the merged picture is real
             if (data.size() >= 5) psd.merged = u8(data, 4) != 0;
             break;
+        case 1058:
+            psd.exif = data;
+            break;
         case 1064:
             aspect = pixel_aspect(data);
             break;

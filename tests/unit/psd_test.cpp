@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "exif_files.h"
 #include "image_checks.h"
+#include "io/exif.h"
 #include "psd_files.h"
 
 namespace probewarp {
@@ -223,6 +225,15 @@ TEST(Psd, FloatingPointIsLight) {
     }
     EXPECT_EQ(only_pixel({.mode = 1, .bits = 32, .channels = 1, .rows = be_float(0.5f)}),
               (Rgba{half, half, half, 65535}));
+}
+
+TEST(Psd, ExifIsCarried) {
+    const ByteOrder order{true};
+    const File exif = make_exif(order, {.main = {text(0x013B, "Somebody"), order.two(0x0112, 6)}});
+    const Image image =
+        decode(make_psd({.rows = bytes({1, 2, 3}), .resources = psd_resource(1058, exif)}), "a.psd");
+    EXPECT_EQ(image.description.exif, parse_exif(exif).block);
+    EXPECT_FALSE(image.description.exif.empty());
 }
 
 // ---- alpha ----
