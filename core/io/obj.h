@@ -43,8 +43,8 @@ struct ObjContents {
 /// Requires a whole picture. Throws Error.
 ObjContents obj_contents(const std::filesystem::path& obj, const Deformation& deformation);
 
-/// Writes them, each as write_file does, and none where there is no room for all. Throws Error, before anything
-/// is written, where a companion would replace a file that was not written with an OBJ of this name.
+/// Writes them, each as write_file does, and none where there is no room for all. Throws Error, before
+/// anything is written, where a companion would replace a file that was not written with an OBJ of this name.
 void write_obj(const ObjContents& contents);
 
 }  // namespace probewarp

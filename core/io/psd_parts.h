@@ -38,7 +38,7 @@ struct Psd {
     Bytes palette;                            ///< of an indexed file: its reds, its greens, its blues
     std::optional<std::uint8_t> clear_index;  ///< of an indexed file: the colour that is transparent
     Bytes icc;
-    Bytes exif;  ///< from the byte order on
+    Bytes exif;                                    ///< from the byte order on
     std::optional<Resolution> resolution, aspect;  ///< as in Description
     bool merged = true;                            ///< false: the file says that its merged picture is none
     bool layered = false;

@@ -41,7 +41,8 @@ class Failures(unittest.TestCase):
     def commands(self):
         """What is done, and the files that it makes."""
         for name in "x.png", "x.jpg", "x.tga", "x.obj", "x.probewarp":
-            yield ["render", self.project, "-o", self.at("out/" + name)], [name]
+            beside = ["x-texture.png", "x.mtl"] if name == "x.obj" else []
+            yield ["render", self.project, "-o", self.at("out/" + name)], [*beside, name]
         yield ["render", self.project, "-o", self.at("out/x.png"), "--weights", "harmonic"], ["x.png"]
         yield ["weights", self.project, "-o", self.at("out"), "--quiet"], ["01-Probe_1.png", "02-Probe_2.png"]
         yield ["render", self.project, "--image", self.at("in/a.png"), self.at("in/b.png"), "-o",

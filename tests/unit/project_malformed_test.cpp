@@ -62,7 +62,9 @@ TEST(MalformedProject, AWrongMimetype) {
     members[0].bytes = to_bytes("application/x-probewarp\n");
     EXPECT_THAT(refusal(members), HasSubstr("is not a Probewarp project"));
     members[0].bytes = to_bytes("image/openraster");
-    EXPECT_THAT(refusal(members), HasSubstr("its mimetype is \"image/openraster\""));
+    EXPECT_THAT(refusal(members), HasSubstr("is an OpenRaster picture"));
+    members[0].bytes = to_bytes("image/unheard-of");
+    EXPECT_THAT(refusal(members), HasSubstr("its mimetype is \"image/unheard-of\""));
 }
 
 TEST(MalformedProject, DoubledMembers) {

@@ -112,8 +112,8 @@ TEST(RezippedProject, WhatDesktopsAddIsPassedOver) {
 
 TEST(RezippedProject, OtherArchivesAreSaidToBeThat) {
     const std::vector<std::pair<std::vector<RawMember>, const char*>> others{
-        {{{"word/document.xml", to_bytes("<w/>")}}, "without the members mimetype and project.json"},
-        {{{"mimetype", to_bytes("image/openraster")}, {"stack.xml", {}}}, "without a member project.json"},
+        {{{"notes/today.xml", to_bytes("<w/>")}}, "without the members mimetype and project.json"},
+        {{{"mimetype", to_bytes("image/unheard-of")}, {"notes.xml", {}}}, "without a member project.json"},
         {{{"project.json", to_bytes("{}")}}, "without a member mimetype"},
         {{{"../evil", to_bytes("x")}}, "is a ZIP archive without"},
     };
