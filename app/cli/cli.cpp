@@ -236,7 +236,9 @@ int run_command(int argc, char** argv, int (*open_window)(const std::string& pat
         app.parse(argc, argv);
         heed_environment();
         if (!app.get_subcommands().empty() && app.count("--deform") > 0)
-            throw UsageError("--deform: before a command it is nobody's; expected it behind render");
+            throw UsageError(
+                "--deform: before a command it has no meaning; expected it after render, or without a "
+                "command");
         limit_threads_to_what_starts();
         if (const CLI::App* command = app.get_subcommand("render"); command->parsed()) {
             render_options.given = given_options(*command, std::span(argv, std::size_t(argc)));

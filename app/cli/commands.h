@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/incomplete_file.h"
 #include "model/document.h"
 #include "model/error.h"
 

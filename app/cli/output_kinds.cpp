@@ -56,11 +56,8 @@ std::string written_formats() {
 
 OutputFormat output_format(const RenderOptions& o) {
     if (o.output == "-" && o.format.empty()) throw UsageError("-o -: expected --format with it");
-    std::string ending = std::filesystem::path(o.output).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](char c) { return char(std::tolower(c)); });
-    if (o.format == "obj" || (o.format.empty() && ending == ".obj")) return {Kind::mesh};
-    if (o.format == "probewarp" || (o.format.empty() && ending == project_extension)) return {Kind::project};
+    if (o.format == "obj" || (o.format.empty() && is_obj(o.output))) return {Kind::mesh};
+    if (o.format == "probewarp" || (o.format.empty() && is_project_path(o.output))) return {Kind::project};
     const ImageFormat* format = o.format.empty() ? image_format_of(o.output) : find_image_format(o.format);
     if (!format || !format->encode)
         throw UsageError(fmt::format("{} cannot be written; expected png, jpeg, bmp, tga, obj or probewarp",

@@ -136,7 +136,7 @@ void weights(const WeightsOptions& o) {
     if (o.output.empty() && o.save.empty())
         throw UsageError("weights: nothing would be written; expected -o FOLDER or --save FILE.probewarp");
     check_options(o);
-    if (!o.save.empty() && std::filesystem::path(o.save).extension() != project_extension)
+    if (!o.save.empty() && !is_project_path(o.save))
         throw UsageError(
             fmt::format("--save {}: expected a name that ends with {}", o.save, project_extension));
     Document document = read_document(o.input, Pixels::whole, {.salvage = o.salvage});

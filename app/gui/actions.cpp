@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 
 #include "gui/app.h"
@@ -45,13 +44,6 @@ fs::path usual_folder(const App& app) {
     if (!app.last_folder.empty()) return app.last_folder;
     const char* home = std::getenv("HOME");
     return home ? home : "/";
-}
-
-bool is_project_path(const fs::path& path) {
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return ending == project_extension;
 }
 
 /// Ends a job in which a file turned out to be damaged at its end: asks whether to open what is there of it.
@@ -292,8 +284,6 @@ void open_dropped(App& app, std::span<const char* const> dropped) {
     open_path(app, *path, dropped.size() - 1);
 }
 
-bool is_obj(const fs::path& path) { return path.extension() == ".obj" || path.extension() == ".OBJ"; }
-
 fs::path export_path(const App& app) {
     return usual_folder(app) / without_tilde(app.export_dialog.path.meant().native());
 }
@@ -318,7 +308,7 @@ bool write_obj(const Deformation& shape, const fs::path& path, const Job& job) {
     return true;
 }
 
-/// Likewise.
+/// False where it was given up: then nothing was written.
 bool write_picture(const Deformation& shape, const PictureFile& file, const fs::path& path, Job& job) {
     struct GivenUp {};
     FileWriter output(path);

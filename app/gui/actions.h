@@ -27,9 +27,6 @@ void after_saving(App& app, const char* what, std::function<void(App&)> then);
 /// Ends what the hand is at: a field's number is kept, a drag is taken back.
 void end_gesture(App& app);
 
-/// Whether the path means a Wavefront OBJ.
-bool is_obj(const std::filesystem::path& path);
-
 /// Whether the path leads to the project or to a picture of the document, by whatever name.
 bool is_being_read(const App& app, const std::filesystem::path& path);
 

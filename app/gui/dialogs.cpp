@@ -78,9 +78,10 @@ std::string export_trouble(const App& app) {
 }
 
 void begin_export(App& app) {
+    const std::filesystem::path path = export_path(app);  // it may hang on the last folder
     app.export_dialog.open = false;
-    app.last_folder = export_path(app).parent_path();
-    export_to(app, export_path(app));
+    app.last_folder = path.parent_path();
+    export_to(app, path);
 }
 
 /// What the format of the file has to choose from.

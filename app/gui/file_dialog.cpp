@@ -6,16 +6,17 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <utility>
 
+#include "editor/clicks.h"
 #include "gui/app.h"
 #include "gui/dialogs.h"
 #include "gui/shown_text.h"
 #include "gui/widgets.h"
+#include "io/lower_case.h"
 #include "io/printable.h"
 
 namespace probewarp {
@@ -25,13 +26,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t most_entries = 5000;
-constexpr double double_click_seconds = 0.5;
-
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return text;
-}
 
 std::string size_text(std::uintmax_t bytes) {
     if (bytes < 1000) return fmt::format("{} B", bytes);
@@ -51,7 +45,7 @@ void list_folder(FileDialog& dialog) {
         const std::string label = at->path().filename().string();
         if (label.starts_with('.')) continue;
         const bool is_folder = at->is_directory(ignored);
-        const std::string ending = lower(at->path().extension().string());
+        const std::string ending = lower_ending(at->path());
         if (!is_folder &&
             std::find(dialog.endings.begin(), dialog.endings.end(), ending) == dialog.endings.end())
             continue;
@@ -64,7 +58,7 @@ void list_folder(FileDialog& dialog) {
         dialog.trouble =
             fmt::format("{} cannot be listed: {}.", printable(dialog.folder.native()), error.message());
     std::sort(dialog.entries.begin(), dialog.entries.end(), [](const auto& a, const auto& b) {
-        return a.is_folder != b.is_folder ? a.is_folder : lower(a.label) < lower(b.label);
+        return a.is_folder != b.is_folder ? a.is_folder : lower_case(a.label) < lower_case(b.label);
     });
 }
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 
+#include "io/lower_case.h"
 #include "io/printable.h"
 
 namespace probewarp {
@@ -13,12 +13,6 @@ namespace probewarp {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return text;
-}
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(" .") == std::string_view::npos; }
 
@@ -40,7 +34,7 @@ bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0u) ==
 MeantPath with_ending(fs::path path, std::span<const std::string> endings) {
     std::string name = path.filename().string();
     const auto is_ending = [&](const std::string& text) {
-        return std::find(endings.begin(), endings.end(), lower(text)) != endings.end();
+        return std::find(endings.begin(), endings.end(), lower_case(text)) != endings.end();
     };
     if (is_ending(name)) return trouble(fmt::format("The name before {} is missing.", name));
     if (!is_ending(path.extension().string())) {
@@ -101,7 +95,7 @@ std::string fitting_name(std::string_view stem, std::string_view ending) {
 
 std::optional<fs::path> dropped_path(std::string_view dropped) {
     const auto colon = dropped.find(':');
-    const std::string scheme = lower(std::string(dropped.substr(0, colon)));
+    const std::string scheme = lower_case(dropped.substr(0, colon));
     if (colon == std::string_view::npos || dropped.starts_with('/')) return fs::path(dropped);
     if (scheme != "file") return {};
     std::string_view rest = dropped.substr(colon + 1);

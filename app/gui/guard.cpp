@@ -12,6 +12,7 @@ namespace probewarp {
 namespace {
 
 constexpr const char* no_memory = "There is not enough memory for that.";
+constexpr const char* no_reason = "Something failed for an unknown reason.";
 
 void keep(Trouble& trouble, std::string_view reason) noexcept {
     const std::size_t length = std::min(reason.size(), trouble.reason.size() - 1);
@@ -29,7 +30,7 @@ std::string failure_text(const std::exception_ptr& failure) {
     } catch (const std::exception& error) {
         return error.what();
     } catch (...) {
-        return "Something failed for an unknown reason.";
+        return no_reason;
     }
 }
 
@@ -43,7 +44,7 @@ void recover(App& app) noexcept {
     } catch (const std::exception& error) {
         keep(app.trouble, error.what());
     } catch (...) {
-        keep(app.trouble, "Something failed for an unknown reason.");
+        keep(app.trouble, no_reason);
     }
     if (app.editor.gesture) cancel(app.editor);
     app.trouble.restores = true;

@@ -47,7 +47,7 @@ inline constexpr float label_opacity = 0.9f;
 
 /// The layout's sizes at scale 1, pixels.
 namespace look {
-inline constexpr float menu = 32, status = 26, tools = 48, panel = 308, row = 28, field = 26, label = 64,
+inline constexpr float menu = 32, status = 26, tools = 48, panel = 308, row = 28, field = 26,
                        slider_number = 52;
 }
 

@@ -80,6 +80,7 @@ void use_fonts(App& app, const Fonts& fonts) {
 }
 
 void rebuild_fonts(App& app) {
+    app.fonts = {};  // whatever fails on the way, the old ones are gone: the next frame tries again
     use_fonts(app, load_fonts_with(app.scale, app.glyphs.loaded));
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();

@@ -1,5 +1,5 @@
-// Which picture formats there are, and the way from a file's bytes to a Picture: the signature decides, never
-// the ending, because endings lie.
+// Which picture formats there are, and the way from a file's bytes to a Picture: the signature decides,
+// because endings lie; only for a TGA without its footer, which has none, does the ending count.
 #include "io/image_file.h"
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 
 #include "io/file.h"
 #include "io/formats.h"
+#include "io/lower_case.h"
 #include "io/naming_errors.h"
 #include "io/printable.h"
 #include "io/row_reader.h"
@@ -86,10 +87,7 @@ const ImageFormat* find_image_format(string_view name) {
 }
 
 const ImageFormat* image_format_of(const std::filesystem::path& path) {
-    std::string ending = path.extension().string();
-    // By hand: std::tolower depends on the locale.
-    for (char& c : ending)
-        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    const std::string ending = lower_ending(path);
     for (const ImageFormat& format : formats)
         if (std::find(format.extensions.begin(), format.extensions.end(), ending) != format.extensions.end())
             return &format;

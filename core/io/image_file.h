@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/incomplete_file.h"
 #include "model/error.h"
 #include "model/image.h"
 #include "model/probe.h"

@@ -4,8 +4,8 @@
 #include <new>
 #include <string>
 
+#include "io/incomplete_file.h"
 #include "io/printable.h"
-#include "model/error.h"
 
 namespace probewarp {
 

@@ -10,6 +10,7 @@
 
 #include "io/file.h"
 #include "io/formats.h"
+#include "io/lower_case.h"
 #include "io/printable.h"
 
 namespace probewarp {
@@ -37,6 +38,8 @@ std::string plain_name(std::string name) {
 }
 
 }  // namespace
+
+bool is_obj(const fs::path& path) { return lower_ending(path) == ".obj"; }
 
 std::string encode_obj(const Deformation& deformation, std::string_view material_file) {
     const Mesh& mesh = mesh_of(deformation);

@@ -22,6 +22,9 @@ std::string encode_obj(const Deformation& deformation, std::string_view material
 std::string encode_mtl(const Deformation& deformation, const std::filesystem::path& obj,
                        std::string_view texture_file);
 
+/// By the path's ending, in any case.
+bool is_obj(const std::filesystem::path& path);
+
 /// What is written beside an OBJ, of the same name: NAME.mtl and NAME-texture.png, the undeformed picture. A
 /// picture called NAME.png is thus never in the way. Spaces and what else readers of OBJ take apart become
 /// '_' in these names.

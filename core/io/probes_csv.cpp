@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "io/lower_case.h"
 #include "io/printable.h"
 
 namespace probewarp {
@@ -81,13 +82,6 @@ bool is_quoted(std::string_view text) {
 std::string_view bare(std::string_view text) {
     text = trimmed(text);
     return is_quoted(text) ? trimmed(text.substr(1, text.size() - 2)) : text;
-}
-
-std::string lower(std::string_view text) {
-    std::string lowered(text);
-    for (char& c : lowered)
-        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-    return lowered;
 }
 
 /// What stands between the separators of a line.
@@ -190,12 +184,12 @@ Numbers numbers_of(const Row& row, int line) {
 }
 
 /// Whether a row names the columns instead of filling them.
-bool is_header(const Row& row) { return std::ranges::equal(row.fields, columns, {}, lower); }
+bool is_header(const Row& row) { return std::ranges::equal(row.fields, columns, {}, lower_case); }
 
 /// The separator that Excel is told by a first line "sep=;", or 0.
 char declared_separator(std::string_view line) {
     if (line.starts_with('"')) line.remove_prefix(1);
-    return line.size() > 4 && lower(line.substr(0, 4)) == "sep=" ? line[4] : char(0);
+    return line.size() > 4 && lower_case(line.substr(0, 4)) == "sep=" ? line[4] : char(0);
 }
 
 /// Where the program's numbers are in the picture: origin at its centre, 1024 along its longer side, y up.
@@ -238,7 +232,7 @@ std::vector<Probe> decode_probes_csv(std::string_view bytes, const Document& doc
         const std::string_view first =
             row_text.substr(std::min(row_text.find_first_not_of(" \t\""), row_text.size()));
         if (first.starts_with('#')) {
-            in_probes = lower(first.substr(0, 7)) == "#probes";
+            in_probes = lower_case(first.substr(0, 7)) == "#probes";
             seen = seen || in_probes;
             continue;
         }

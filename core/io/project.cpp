@@ -9,6 +9,7 @@
 
 #include "io/file.h"
 #include "io/image_file.h"
+#include "io/lower_case.h"
 #include "io/naming_errors.h"
 #include "io/paint_file.h"
 #include "io/printable.h"
@@ -339,6 +340,8 @@ Document decode_project(std::vector<std::byte> bytes, const std::string& name, P
     naming_errors(name, [&] { check_size(document); });
     return std::move(document);
 }
+
+bool is_project_path(const std::filesystem::path& path) { return lower_ending(path) == project_extension; }
 
 bool is_project(std::span<const std::byte> bytes) { return is_zip(bytes); }
 

@@ -31,6 +31,9 @@ Document decode_project(std::vector<std::byte> bytes, const std::string& name, P
 Document read_document(const std::filesystem::path& path, Pixels pixels = Pixels::whole,
                        const DecodeOptions& options = {});
 
+/// By the path's ending, in any case.
+bool is_project_path(const std::filesystem::path& path);
+
 /// Whether the bytes are meant as a project rather than a picture.
 bool is_project(std::span<const std::byte> bytes);
 

@@ -352,8 +352,8 @@ class TypingTest(unittest.TestCase):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
-    for name in ("program", "scratch"):
+    for name in ("program", "images", "scratch"):
         parser.add_argument(f"--{name}", required=True)
     options, rest = parser.parse_known_args()
-    faulthandler.dump_traceback_later(580, exit=True)  # says where it hangs, should it hang
+    faulthandler.dump_traceback_later(880, exit=True)  # says where it hangs, should it hang
     unittest.main(argv=[sys.argv[0], *rest], verbosity=2)
