@@ -57,6 +57,11 @@ CLI::Validator range(double low, double high) {
             wanted};
 }
 
+/// Of what names a file or a folder.
+const CLI::Validator not_empty(
+    [](std::string& text) { return text.empty() ? std::string("is empty; expected a name") : std::string(); },
+    "");
+
 std::string check_threshold(const std::string& text) {
     int value = -1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -92,21 +97,24 @@ void add_binding(CLI::App& command, BindingOptions& o) {
 
 void add_render(CLI::App& app, RenderOptions& o) {
     CLI::App* command = app.add_subcommand("render", "Deform a picture or a project and write the result");
-    command->add_option("INPUT", o.input, "A picture or a project")->required();
+    command->add_option("INPUT", o.input, "A picture or a project")->required()->check(not_empty);
     command
         ->add_option(
             "-o,--output", o.output,
             "PNG, JPEG, BMP, TGA, OBJ (the mesh; its material NAME.mtl and the picture "
             "NAME-texture.png are written beside it) or probewarp (a project); - for standard output, "
             "where OBJ comes without these two")
-        ->required();
-    command->add_option("--probes", o.probes_csv, "Add the probes of a CSV file of the iPad program");
+        ->required()
+        ->check(not_empty);
+    command->add_option("--probes", o.probes_csv, "Add the probes of a CSV file of the iPad program")
+        ->check(not_empty);
     command
         ->add_option(
             "--image", o.images,
             "Put another picture under the probes; several, one after the other, where OUTPUT is such "
             "as DIR/{name}.png")
-        ->expected(1, CLI::detail::expected_max_vector_size);
+        ->expected(1, CLI::detail::expected_max_vector_size)
+        ->check(not_empty);
     add_binding(*command, o);
     command->add_option("--blend", o.blend, "Blend method")->check(CLI::IsMember(names(blend_methods())));
     auto* scale =
@@ -145,8 +153,9 @@ void add_render(CLI::App& app, RenderOptions& o) {
 void add_weights(CLI::App& app, WeightsOptions& o) {
     CLI::App* command = app.add_subcommand(
         "weights", "Write each probe's weights as a 16-bit grey PNG, or read such maps as paint");
-    command->add_option("INPUT", o.input, "A picture or a project")->required();
-    command->add_option("-o,--output", o.output, "The folder to write to, which is made where missing");
+    command->add_option("INPUT", o.input, "A picture or a project")->required()->check(not_empty);
+    command->add_option("-o,--output", o.output, "The folder to write to, which is made where missing")
+        ->check(not_empty);
     add_binding(*command, o);
     command->add_option("--size", o.size, "WxH: pixels of the maps, instead of the picture's");
     command
@@ -156,14 +165,15 @@ void add_weights(CLI::App& app, WeightsOptions& o) {
             "its share, alpha where it is painted")
         ->expected(1)
         ->take_all();
-    command->add_option("--save", o.save, "FILE.probewarp: write the project with what was imported");
+    command->add_option("--save", o.save, "FILE.probewarp: write the project with what was imported")
+        ->check(not_empty);
     add_salvage(*command, o.salvage);
     command->add_flag("--quiet", o.quiet, "Do not tell what is written");
 }
 
 void add_info(CLI::App& app, InfoOptions& o) {
     CLI::App* command = app.add_subcommand("info", "Tell what a picture or a project holds");
-    command->add_option("INPUT", o.input, "A picture or a project")->required();
+    command->add_option("INPUT", o.input, "A picture or a project")->required()->check(not_empty);
     command->add_flag("--json", o.json, "As JSON");
     add_salvage(*command, o.salvage);
     add_backend(*command, o.backend);

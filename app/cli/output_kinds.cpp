@@ -81,6 +81,9 @@ void check_options(const RenderOptions& o, const OutputFormat& format) {
             throw UsageError(
                 fmt::format("{}: has no meaning for {}; expected {}", option, label_of(format),
                             use == For::png ? "png" : "a picture's format: " + written_formats()));
+    if (o.given.contains("--background") && o.background == "none" && format.kind == Kind::image &&
+        format.image->name == "jpeg")
+        throw UsageError("--background none: JPEG has no transparency; expected a colour, such as white");
     if (o.report && o.output == "-")
         throw UsageError("--report: standard output holds the file; expected another output than -");
 }

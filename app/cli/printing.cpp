@@ -19,9 +19,9 @@ void print_plain(std::string_view text) {
         output_error = errno;
 }
 
-void print_aside(std::string_view text) {
-    std::fwrite(text.data(), 1, text.size(), stderr);
-    std::fflush(stderr);
+bool print_aside(std::string_view text) {
+    const bool whole = std::fwrite(text.data(), 1, text.size(), stderr) == text.size();
+    return std::fflush(stderr) == 0 && whole;
 }
 
 int finish_printing(int code) {

@@ -17,8 +17,8 @@ void print(fmt::format_string<Values...> format, Values&&... values) {
     print_plain(fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// To standard error, at once. What cannot be written is lost.
-void print_aside(std::string_view text);
+/// To standard error, at once. Returns whether it could be written; what could not is lost.
+bool print_aside(std::string_view text);
 
 /// Brings what was printed to where it goes. Returns the program's exit code: `code`, but 1 where that is 0
 /// and something that was meant for standard output is lost, which is said then.

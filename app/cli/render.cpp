@@ -222,7 +222,7 @@ int render(const RenderOptions& o) {
         code = render_all(o, format, timings);
     else
         render_one(o, format, timings);
-    if (o.timings) timings.print();
+    if (o.timings && !print_aside(timings.text()) && code == 0) code = 1;  // they were asked for
     return code;
 }
 

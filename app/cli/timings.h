@@ -1,6 +1,8 @@
 // Where the time of a render goes, for --timings.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -30,16 +32,18 @@ class Timings {
         seconds_[std::size_t(stage)] += seconds;
     }
 
-    /// To standard error, a line for each stage and one for all, which is less where stages overlapped; and
-    /// the most memory that was held, where the system tells.
-    void print() const {
-        const auto line = [](std::string_view name, double seconds) {
-            std::fprintf(stderr, "timings: %.*s %.3f s\n", int(name.size()), name.data(), seconds);
+    /// A line for each stage and one for all, which is less where stages overlapped; and the most memory that
+    /// was held, where the system tells.
+    std::string text() const {
+        std::string lines;
+        const auto add_line = [&lines](std::string_view name, double seconds) {
+            lines += fmt::format("timings: {} {:.3f} s\n", name, seconds);
         };
-        for (std::size_t i = 0; i < stage_names.size(); ++i) line(stage_names[i], seconds_[i]);
-        line("in all", seconds_since(start_));
+        for (std::size_t i = 0; i < stage_names.size(); ++i) add_line(stage_names[i], seconds_[i]);
+        add_line("in all", seconds_since(start_));
         if (const double mib = peak_memory(); mib > 0)
-            std::fprintf(stderr, "timings: memory %.1f MiB\n", mib);
+            lines += fmt::format("timings: memory {:.1f} MiB\n", mib);
+        return lines;
     }
 
   private:
