@@ -361,13 +361,13 @@ void set_up_toolkit_input(App& app) {
     io.ConfigDragClickToInputText = true;
     io.ClipboardUserData = &app;
     io.SetClipboardTextFn = [](void* user, const char* text) {
-        glfwSetClipboardString(static_cast<App*>(user)->window, text);
+        App& a = *static_cast<App*>(user);
+        a.input.clipboard.copy(a.window, text);
     };
     io.GetClipboardTextFn = [](void* user) -> const char* {
         App& a = *static_cast<App*>(user);
-        const char* text = glfwGetClipboardString(a.window);
-        if (!text || a.number.id == 0) return text;
-        a.input.pasted = pasted_number(text);
+        const std::string text = a.input.clipboard.text(a.window);
+        a.input.pasted = a.number.id == 0 ? text : pasted_number(text);
         return a.input.pasted.c_str();
     };
 }

@@ -12,6 +12,7 @@
 
 #include "editor/clicks.h"
 #include "editor/keys.h"
+#include "gui/clipboard.h"
 
 namespace probewarp {
 
@@ -36,7 +37,8 @@ struct Input {
     LayoutKey key;                                ///< the last key that was pressed
     std::array<int, GLFW_KEY_LAST + 1> handed{};  ///< the toolkit's name of each key that it believes down; 0
     ClickCounter clicks;
-    std::string pasted;  ///< the clipboard as a number field was given it
+    Clipboard clipboard;
+    std::string pasted;  ///< what the clipboard last held, as the field was given it
     int frames_to_settle =
         0;  ///< before keys go on: a field takes the keyboard a frame after it was asked to
     bool enter_to_release = false;       ///< the toolkit was told so, to end a text

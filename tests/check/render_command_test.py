@@ -46,7 +46,8 @@ class Info(unittest.TestCase):
     def test_the_windows_option_is_not_a_commands(self):
         done = subprocess.run([PROGRAM, "--deform", "shader", "info", OCTOPUS], capture_output=True, text=True, timeout=120)
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertEqual(done.stderr, "probewarp: --deform: before a command it is nobody's; expected it behind render\n")
+        self.assertEqual(done.stderr, "probewarp: --deform: before a command it has no meaning; "
+                         "expected it after render, or without a command\n")
 
 
 class Render(unittest.TestCase):

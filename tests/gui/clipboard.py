@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Owns the clipboard until it is killed: clipboard.py TEXT. Says "ready" once it does."""
+"""Owns the clipboard until it is killed: clipboard.py [TEXT]. Says "ready" once it does. Without a text it never answers."""
 import sys
 
 from Xlib import X, Xatom, display
@@ -13,7 +13,7 @@ screen.sync()
 print("ready", flush=True)
 while True:
     e = screen.next_event()
-    if e.type != X.SelectionRequest:
+    if e.type != X.SelectionRequest or len(sys.argv) == 1:
         continue
     place = e.property or e.target
     if e.target == atom("TARGETS"):

@@ -70,9 +70,9 @@ class TypingTest(unittest.TestCase):
     def probe(self, desk):
         return self.saved(desk)["probes"][0]
 
-    def copy(self, desk, text):
-        """Puts a text into the clipboard."""
-        owner = subprocess.Popen([sys.executable, str(pathlib.Path(__file__).with_name("clipboard.py")), text],
+    def copy(self, desk, *text):
+        """Puts a text into the clipboard; without one its owner never answers."""
+        owner = subprocess.Popen([sys.executable, str(pathlib.Path(__file__).with_name("clipboard.py")), *text],
                                  env=desk.environment, stdout=subprocess.PIPE, text=True)
         self.addCleanup(owner.wait)
         self.addCleanup(owner.kill)
@@ -188,6 +188,19 @@ class TypingTest(unittest.TestCase):
         self.click(desk, NOW_X)
         desk.key("ctrl+v", "Return")
         self.assertEqual(self.probe(desk)["now"], [-12, 140])
+
+    def test_a_clipboard_that_never_answers_keeps_nobody(self):
+        desk = self.open()
+        self.copy(desk)
+        self.click(desk, NOW_X)
+        desk.key("ctrl+v", "7", "Return")
+        self.assertEqual(self.probe(desk)["now"], [7, 140])
+
+    def test_what_is_copied_here_is_pasted_here(self):
+        desk = self.open()
+        self.click(desk, NOW_X)
+        desk.key("ctrl+c", "Tab", "ctrl+v", "Return")
+        self.assertEqual(self.probe(desk)["now"], [160, 160])
 
     def test_nothing_typed_is_a_shortcut(self):
         desk = self.open()
