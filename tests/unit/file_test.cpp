@@ -227,7 +227,7 @@ TEST_F(FileTest, RemovesWhatAKilledProgramLeftOfTheSameFileOnly) {
     EXPECT_EQ(names_in(folder.path).size(), 3u);
 }
 
-// Each statement of these dies by a signal with nothing but its own temporary files gone.
+// What is signalled runs in a process of its own, which ends by the signal.
 
 TEST_F(FileTest, ASignalRemovesATemporaryFileAndKeepsTheOldOne) {
     put("old");
