@@ -72,11 +72,15 @@ void read_masks(const Information& info, Packing packing, BmpHeader& header) {
         throw damaged("BMP", "no bits are given to its colours");
 }
 
-/// The bytes between the header and the pixels that the header speaks of: masks and palette.
-std::size_t bytes_between(const Information& info, Packing packing, const BmpHeader& header) {
+/// The bytes between the header and the pixels that the header speaks of: masks and palette. offset_is_given:
+/// the file says that the pixels follow the header at once, rather than nothing
+std::size_t bytes_between(const Information& info, Packing packing, const BmpHeader& header,
+                          bool offset_is_given) {
     std::size_t masks = packing == Packing::masks ? 12 : packing == Packing::masks_with_alpha ? 16 : 0;
     if (info.size > 40) masks = 0;
-    std::size_t colours = info.field(32);
+    // Above 8 bits a palette is only a hint for screens with few colours, and may be counted without being
+    // there: where the offset says that nothing stands between, it is not.
+    std::size_t colours = header.bits > 8 && offset_is_given ? 0 : info.field(32);
     if (colours == 0 && header.bits <= 8) colours = std::size_t{1} << header.bits;
     return masks + colours * header.palette_entry;
 }
@@ -215,7 +219,8 @@ BmpHeader read_bmp_header(Bytes file) {
     // what the header speaks of.
     const std::size_t header_end = before + 14 + info.size;
     std::size_t start = le32(head, 10);
-    if (start == 0 || start == header_end) start = header_end + bytes_between(info, packing, header);
+    if (start == 0 || start == header_end)
+        start = header_end + bytes_between(info, packing, header, start != 0);
     if (start < header_end) throw damaged("BMP", "its pixels start inside its header");
     if (start > file.size()) throw truncated("BMP");
     if (header.bits <= 8) read_palette(info, start - header_end, header);

@@ -24,8 +24,8 @@ constexpr std::size_t head_bytes = 6;
 ExifFile open_exif(Bytes tiff) {
     ExifFile data(exif_data_new(), &exif_data_unref);
     if (!data) throw std::bad_alloc();
-    // The one would leave out what it does not know, the other add what the specification asks for: a
-    // resolution of 72 dots per inch that nobody stated.
+    // IGNORE_UNKNOWN_TAGS would leave out the tags that libexif does not know. FOLLOW_SPECIFICATION would add
+    // what the specification asks for: a resolution of 72 dots per inch that nobody stated.
     exif_data_unset_option(data.get(), EXIF_DATA_OPTION_IGNORE_UNKNOWN_TAGS);
     exif_data_unset_option(data.get(), EXIF_DATA_OPTION_FOLLOW_SPECIFICATION);
     std::vector<std::byte> bytes(head_bytes + tiff.size());

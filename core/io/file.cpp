@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/descriptor.h"
 #include "io/printable.h"
 #include "io/same_file.h"
 #include "io/temporary_file.h"
@@ -22,18 +23,6 @@ namespace probewarp {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A descriptor that closes itself.
-struct Descriptor {
-    int fd = -1;
-
-    explicit Descriptor(int number) : fd(number) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (fd >= 0) ::close(fd);
-    }
-};
 
 std::string reason(int error) { return std::generic_category().message(error); }
 

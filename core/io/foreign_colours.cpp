@@ -4,8 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
-#include <limits>
-#include <type_traits>
 
 #include "io/colour_engine.h"
 
@@ -23,9 +21,6 @@ bool are_inks(ForeignColours colours) {
 }
 
 // ---- the plain conversion of inks, without a profile ----
-
-template <class Sample>
-constexpr Sample full = std::is_floating_point_v<Sample> ? Sample(1) : std::numeric_limits<Sample>::max();
 
 template <class Sample>
 void from_inks(std::span<Sample> samples, bool inverted) {
@@ -46,16 +41,12 @@ Profile own_profile(const ColourEngine& engine, Bytes icc, cmsColorSpaceSignatur
     return profile;
 }
 
-struct FreeCurve {
-    void operator()(cmsToneCurve* curve) const { cmsFreeToneCurve(curve); }
-};
-
 /// Amounts of light of the same primaries as the given profile's, or as sRGB's.
 Profile linear_profile(const ColourEngine& engine, Profile given) {
     const Profile like = given && cmsIsMatrixShaper(given.get())
                              ? std::move(given)
                              : Profile(cmsCreate_sRGBProfileTHR(engine.context));
-    const std::unique_ptr<cmsToneCurve, FreeCurve> straight(cmsBuildGamma(engine.context, 1));
+    const ToneCurve straight(cmsBuildGamma(engine.context, 1));
     Profile linear(cmsCreateProfilePlaceholder(engine.context));
     if (!like || !straight || !linear) throw std::bad_alloc();
     cmsSetDeviceClass(linear.get(), cmsSigDisplayClass);

@@ -2,12 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
+#include <type_traits>
 
 #include "io/bytes.h"
 
 namespace probewarp {
+
+/// The sample of full intensity, of integers or of floating-point numbers.
+template <class Sample>
+constexpr Sample full = std::is_floating_point_v<Sample> ? Sample(1) : std::numeric_limits<Sample>::max();
 
 enum class ForeignColours {
     cmyk,           ///< ink, full is dark

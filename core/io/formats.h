@@ -61,6 +61,5 @@ inline std::uint8_t to_8_bits(std::uint16_t v) { return std::uint8_t((v * 255u +
 Image blank_image(long long width, long long height, int bits);
 
 inline std::vector<std::uint8_t>& samples_8(Image& image) { return std::get<0>(image.rgba); }
-inline std::vector<std::uint16_t>& samples_16(Image& image) { return std::get<1>(image.rgba); }
 
 }  // namespace probewarp

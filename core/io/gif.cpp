@@ -54,10 +54,11 @@ std::size_t palette_bytes(std::uint32_t flags) { return flags & 0x80 ? std::size
 struct Frame {
     std::size_t at = 0;  // its image descriptor in the file
     int transparent = -1;
-    std::vector<std::byte> icc;
+    std::size_t profile_at = 0;  // the sub-blocks of the first profile in the file; 0: there is none
 };
 
 std::vector<std::byte> read_profile(Bytes file, std::size_t at) {
+    if (at == 0) return {};
     std::vector<std::byte> profile;
     SubBlocks blocks(file, at);
     for (int byte = blocks.next(); byte >= 0 && profile.size() <= max_icc_bytes; byte = blocks.next())
@@ -71,8 +72,10 @@ void read_extension(Bytes file, std::size_t at, Frame& frame) {
     // A graphic control extension: size 4, flags, delay, transparent colour.
     if (extension.size() > 7 && begins_with(extension.subspan(1), "\xF9\4"))
         frame.transparent = u8(extension, 3) & 1 ? int(u8(extension, 6)) : -1;
-    if (extension.size() > 14 && begins_with(extension.subspan(1), "\xFF\x0BICCRGBG1012"))
-        frame.icc = read_profile(file, at + 14);
+    // Read once the frame is found, so that many of them cost no more than one.
+    if (frame.profile_at == 0 && extension.size() > 14 &&
+        begins_with(extension.subspan(1), "\xFF\x0BICCRGBG1012"))
+        frame.profile_at = at + 14;
 }
 
 /// Walks the blocks up to the first frame. Bytes between blocks that begin none are passed over, as all
@@ -187,7 +190,7 @@ Image decode_gif(Bytes file, const DecodeOptions& options) {
     Image image = blank_image((long long)(width), (long long)(height), 8);
     place(indices, rectangle, (flags & 0x40u) != 0, palette, frame.transparent, image);
     image.incomplete = indices.count < pixels;
-    image.description.icc = frame.icc;
+    image.description.icc = read_profile(file, frame.profile_at);
     image.description.aspect = aspect_of(u8(file, 12));
     return image;
 }

@@ -24,10 +24,19 @@ namespace {
 
 /// What was found wrong with a file of which what is there is to be opened.
 struct Damage {
+    int markers = 0;           ///< that were kept for what they say of the picture
     bool passed_over = false;  ///< whether damage is passed over; else it ends the decoding
     bool found = false;
     /// The first row that the data do not reach.
     std::size_t end_row = std::numeric_limits<std::size_t>::max();
+
+    /// libjpeg looks through all that it has kept for each one more, which takes hours where there are
+    /// millions of them. A profile has at most 255, and extended XMP about 16 a mebibyte.
+    bool has_too_many_markers(const jpeg_common_struct& codec) {
+        const int marker = codec.err->msg_parm.i[0];
+        const bool kept = marker == JPEG_APP0 + 1 || marker == JPEG_APP0 + 2;
+        return codec.err->msg_code == JTRC_MISC_MARKER && kept && ++markers > 10'000;
+    }
 
     void note(const jpeg_decompress_struct& jpeg) {
         found = true;
@@ -44,6 +53,8 @@ struct Damage {
 /// Level -1 is a warning: mostly the data are bad and libjpeg would go on with made-up pixels. We go on where
 /// the pixels are sure to be right, or where one asks for what is there.
 void on_message(j_common_ptr codec, int level) {
+    auto& damage = *static_cast<Damage*>(codec->client_data);
+    if (damage.has_too_many_markers(*codec)) give_up(codec, JpegTrouble::markers, true);
     if (level >= 0) return;
     const int code = codec->err->msg_code;
     switch (code) {
@@ -56,7 +67,6 @@ void on_message(j_common_ptr codec, int level) {
         default:
             break;
     }
-    auto& damage = *static_cast<Damage*>(codec->client_data);
     if (!damage.passed_over)
         give_up(codec, code == JWRN_JPEG_EOF ? JpegTrouble::truncated : JpegTrouble::damaged);
     damage.note(*reinterpret_cast<j_decompress_ptr>(codec));
@@ -69,6 +79,8 @@ void on_message(j_common_ptr codec, int level) {
             throw Error("needs too much memory while it is read; expected a smaller or a sequential JPEG");
         case JpegTrouble::scans:
             throw Error("has far more scans than its size explains; expected a usual progressive JPEG");
+        case JpegTrouble::markers:
+            throw Error("has far more application markers than a picture needs; expected a usual JPEG file");
         case JpegTrouble::unusual:
             throw Error("is of an unusual kind (" + std::string(errors.message) +
                         "); expected a baseline or progressive JPEG of 8 bits a sample");

@@ -14,7 +14,7 @@
 
 namespace probewarp {
 
-enum class JpegTrouble { none, truncated, damaged, unusual, memory, scans };
+enum class JpegTrouble { none, truncated, damaged, unusual, memory, scans, markers };
 
 /// libjpeg's error manager (first member, so that its address is ours) and where it jumps to.
 struct JpegErrors {

@@ -2,7 +2,6 @@
 
 #include <libdeflate.h>
 #include <spng.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -87,32 +86,27 @@ void read_cicp(Bytes data, Description& said) {
 
 /// Empty where the stream is not sound and whole, or longer than `most` once inflated.
 std::vector<std::byte> inflated(Bytes stream, std::size_t most) {
-    z_stream z{};
-    if (inflateInit(&z) != Z_OK) throw std::bad_alloc();
-    const std::unique_ptr<z_stream, decltype(&inflateEnd)> ended(&z, &inflateEnd);
-    z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(stream.data()));  // zlib knows no const
-    z.avail_in = uInt(stream.size());
-    std::vector<std::byte> out;
-    for (int status = Z_OK; status != Z_STREAM_END;) {
-        if (out.size() > most) return {};
-        out.resize(out.size() + (std::size_t{1} << 16));
-        z.next_out = reinterpret_cast<Bytef*>(out.data() + z.total_out);
-        z.avail_out = uInt(out.size() - z.total_out);
-        status = inflate(&z, Z_NO_FLUSH);
-        if (status != Z_OK && status != Z_STREAM_END) return {};
-    }
-    out.resize(z.total_out);
-    return out.size() <= most ? out : std::vector<std::byte>();
+    const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
+        libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
+    if (!decompressor) throw std::bad_alloc();
+    std::vector<std::byte> out(most);
+    std::size_t size = 0;
+    if (libdeflate_zlib_decompress(decompressor.get(), stream.data(), stream.size(), out.data(), most,
+                                   &size) != LIBDEFLATE_SUCCESS)
+        return {};
+    out.resize(size);
+    return out;
 }
 
-void read_iccp(Bytes data, Description& said) {
+/// data: of an iCCP chunk. Empty where it holds no profile that is of use.
+std::vector<std::byte> profile_in(Bytes data) {
     constexpr std::size_t longest_name = 79;
     const auto name = data.first(std::min(data.size(), longest_name + 1));
     const auto name_end = std::ranges::find(name, std::byte{0});
     const auto length = std::size_t(name_end - name.begin());
-    if (!said.icc.empty() || length == 0 || name_end == name.end()) return;
-    if (data.size() < length + 2 || u8(data, length + 1) != 0) return;  // 0: deflated
-    said.icc = rgb_profile(inflated(data.subspan(length + 2), max_icc_bytes));
+    if (length == 0 || name_end == name.end()) return {};
+    if (data.size() < length + 2 || u8(data, length + 1) != 0) return {};  // 0: deflated
+    return rgb_profile(inflated(data.subspan(length + 2), max_icc_bytes));
 }
 
 void read_phys(Bytes data, Description& said) {
@@ -128,11 +122,10 @@ struct DescribingChunk {
     void (*read)(Bytes data, Description& said);
 };
 
-constexpr std::array<DescribingChunk, 6> describing_chunks{{{"gAMA", read_gama},
+constexpr std::array<DescribingChunk, 5> describing_chunks{{{"gAMA", read_gama},
                                                             {"cHRM", read_chrm},
                                                             {"sRGB", read_srgb},
                                                             {"cICP", read_cicp},
-                                                            {"iCCP", read_iccp},
                                                             {"pHYs", read_phys}}};
 
 // ---- the walk ----
@@ -166,6 +159,7 @@ class Survey {
             add(end_->all);
         else
             make_chunk("IEND", {});
+        found_.description.icc = profile_in(profile_);
         describe_by_exif();
         return std::move(found_);
     }
@@ -205,6 +199,8 @@ class Survey {
             return;
         }
         if (begun_) return;
+        // Unpacked once the whole file has been seen, so that many of them cost no more than one.
+        if (chunk.is("iCCP") && profile_.empty() && chunk.is_sound()) profile_ = chunk.data;
         if (chunk.is("tRNS") && !transparency_ && chunk.is_sound()) transparency_ = chunk;
         for (const DescribingChunk& row : describing_chunks)
             if (chunk.is(row.type) && chunk.is_sound()) row.read(chunk.data, found_.description);
@@ -294,7 +290,7 @@ class Survey {
     Bytes keep(std::vector<std::byte> bytes) { return found_.made.emplace_back(std::move(bytes)); }
     static std::vector<std::byte> chunk_head(std::string_view type, std::size_t length) {
         std::vector<std::byte> head;
-        for (int shift = 24; shift >= 0; shift -= 8) head.push_back(std::byte(length >> shift & 0xFF));
+        put_be32(head, length);
         for (const char c : type) head.push_back(std::byte(c));
         return head;
     }
@@ -310,7 +306,7 @@ class Survey {
     unsigned depth_ = 0, colour_type_ = 0;  ///< IHDR's
     bool header_ = false, begun_ = false;   ///< IHDR is there; the pixels have begun
     std::optional<Chunk> palette_, transparency_, end_;
-    Bytes exif_;
+    Bytes exif_, profile_;  ///< the data of the first eXIf and iCCP
 };
 
 }  // namespace

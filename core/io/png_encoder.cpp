@@ -138,10 +138,6 @@ std::vector<std::byte> deflated_strip(Bytes raw, const Effort& effort, bool last
     return out;
 }
 
-void put_be32(std::vector<std::byte>& to, std::size_t value) {
-    for (int shift = 24; shift >= 0; shift -= 8) to.push_back(std::byte(value >> shift & 0xFF));
-}
-
 void put_text(std::vector<std::byte>& to, std::string_view text) {
     for (const char c : text) to.push_back(std::byte(c));
 }

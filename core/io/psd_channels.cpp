@@ -23,6 +23,7 @@ class RawChannel final : public PsdChannel {
         std::copy_n(rows_.begin(), row.size(), row.begin());
         rows_ = rows_.subspan(row.size());
     }
+    std::unique_ptr<PsdChannel> copy() const override { return std::make_unique<RawChannel>(*this); }
 
   private:
     Bytes rows_;
@@ -81,6 +82,7 @@ class PackedChannel final : public PsdChannel {
         rows_ = rows_.subspan(stored);
         unpack_bits(packed, row, label_);
     }
+    std::unique_ptr<PsdChannel> copy() const override { return std::make_unique<PackedChannel>(*this); }
 
   private:
     RowLengths lengths_;
@@ -99,9 +101,9 @@ class Inflater {
         stream_.avail_in = uInt(bytes.size());
         if (inflateInit(&stream_) != Z_OK) throw std::bad_alloc();
     }
-    /// Goes on from where the other one is.
-    Inflater(const Inflater& other) {
-        if (inflateCopy(&stream_, const_cast<z_stream*>(&other.stream_)) != Z_OK) throw std::bad_alloc();
+    /// A copy goes on from the same place of the stream.
+    Inflater(const Inflater& original) {
+        if (inflateCopy(&stream_, const_cast<z_stream*>(&original.stream_)) != Z_OK) throw std::bad_alloc();
     }
     Inflater& operator=(const Inflater&) = delete;
     ~Inflater() { inflateEnd(&stream_); }
@@ -156,6 +158,7 @@ class DeflatedChannel final : public PsdChannel {
         if (predicted_) add_up(row, bits_);
         if (predicted_ && bits_ == 32) join_bytes(row);
     }
+    std::unique_ptr<PsdChannel> copy() const override { return std::make_unique<DeflatedChannel>(*this); }
 
   private:
     /// Predicted rows of four-byte samples hold all first bytes, then all second ones, and so on.
@@ -220,12 +223,22 @@ PsdChannels packed_channels(const Psd& psd) {
     return channels;
 }
 
+/// Those before the last channel of the picture that are no part of it are inflated all the same.
+void check_channels_between(const Psd& psd, const std::vector<std::size_t>& wanted) {
+    const std::size_t between = wanted.back() + 1 - wanted.size();
+    if (std::uint64_t(psd.height) * psd.row_bytes() * between > max_psd_bytes_between)
+        throw Error("has its transparency behind " + std::to_string(between) +
+                    " large channels that are deflated and no part of the picture; expected a " +
+                    psd.label() + " that has it right behind the colours");
+}
+
 /// Inflates all of it once, to see that it is there and where the channels begin. Channels behind the last
 /// one of the picture are left alone: a small file may hold many that are large.
 PsdChannels deflated_channels(const Psd& psd) {
     const bool predicted = psd.compression == deflated_differences;
     if (predicted && psd.bits == 1) throw damaged(psd.label(), "it has differences of single bits");
     const std::vector<std::size_t> wanted = wanted_channels(psd);
+    check_channels_between(psd, wanted);
     Inflater inflater(psd.rows);
     std::vector<std::byte> row(psd.row_bytes());
     PsdChannels channels;

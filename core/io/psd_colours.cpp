@@ -15,9 +15,6 @@ namespace {
 
 // ---- samples: of 8 bits (single bits too), of 16, and floating-point ones of 32 ----
 
-template <class Sample>
-constexpr Sample full = std::is_floating_point_v<Sample> ? Sample(1) : std::numeric_limits<Sample>::max();
-
 /// No number is none of light; what lies far beyond the rest is held where sums of it still are numbers.
 float sane(float v) { return std::isnan(v) ? 0 : std::clamp(v, -65536.0f, 65536.0f); }
 
@@ -44,11 +41,11 @@ Sample white_of(const Psd& psd, std::size_t channel) {
 template <class Sample>
 class SampleRows {
   public:
-    SampleRows(const Psd& psd, bool salvage)
-        : psd_(psd), salvage_(salvage), channels_(psd_channels(psd)), row_(psd.row_bytes()) {
-        samples.assign(channels_.list.size(), std::vector<Sample>(psd.width));
-        if (channels_.fault && !salvage) throw *channels_.fault;
-        whole = !channels_.fault;
+    /// channels: of that file, at their first rows; they stay there
+    SampleRows(const Psd& psd, const PsdChannels& channels, bool salvage)
+        : whole(!channels.fault), psd_(psd), salvage_(salvage), row_(psd.row_bytes()) {
+        samples.assign(channels.list.size(), std::vector<Sample>(psd.width));
+        for (const auto& channel : channels.list) channels_.push_back(channel->copy());
     }
 
     /// Reads the next row. False where it has lost its first channel.
@@ -56,7 +53,7 @@ class SampleRows {
         bool there = true;
         for (std::size_t i = 0; i < samples.size(); ++i) {
             try {
-                channels_.list[i]->read(row_);
+                channels_[i]->read(row_);
                 unpack<Sample>(row_, psd_.bits, samples[i]);
                 continue;
             } catch (const IncompleteFile& error) {
@@ -74,12 +71,12 @@ class SampleRows {
 
     /// #channels x width: the colours, and then the alpha where there is one.
     std::vector<std::vector<Sample>> samples;
-    bool whole = true;
+    bool whole;
 
   private:
     const Psd& psd_;
     bool salvage_;
-    PsdChannels channels_;
+    std::vector<std::unique_ptr<PsdChannel>> channels_;
     std::vector<std::byte> row_;
     bool first_row_ = true;
 };
@@ -103,8 +100,8 @@ bool can_be_on_white(Sample sample, Sample alpha, Sample white) {
 /// Whether all of the picture can be on white, as Photoshop merges what is partly transparent. Other programs
 /// write the colours unmixed, and nothing in the file says so.
 template <class Sample>
-bool is_on_white(const Psd& psd, bool salvage) {
-    SampleRows<Sample> rows(psd, salvage);
+bool is_on_white(const Psd& psd, const PsdChannels& channels, bool salvage) {
+    SampleRows<Sample> rows(psd, channels, salvage);
     for (std::size_t y = 0; y < psd.height; ++y) {
         if (!rows.next()) continue;
         const std::vector<Sample>& alpha = rows.samples.back();
@@ -218,17 +215,20 @@ void store(std::span<const Sample> rgba, std::span<Stored<Sample>> to) {
 /// Throws where a row is damaged, so that a bad file does not cost the time that converting its colours
 /// takes.
 template <class Sample>
-void look_through(const Psd& psd) {
-    SampleRows<Sample> rows(psd, false);
+void look_through(const Psd& psd, const PsdChannels& channels) {
+    SampleRows<Sample> rows(psd, channels, false);
     for (std::size_t y = 0; y < psd.height; ++y) rows.next();
 }
 
 template <class Sample>
 Image read_pixels(const Psd& psd, bool salvage) {
-    const bool on_white = psd.alpha && psd.mode != PsdMode::indexed && is_on_white<Sample>(psd, salvage);
+    const PsdChannels channels = psd_channels(psd);
+    if (channels.fault && !salvage) throw *channels.fault;
+    const bool on_white =
+        psd.alpha && psd.mode != PsdMode::indexed && is_on_white<Sample>(psd, channels, salvage);
     const std::unique_ptr<const ToSrgb> to_srgb = conversion<Sample>(psd);
-    if (to_srgb && !salvage) look_through<Sample>(psd);
-    SampleRows<Sample> rows(psd, salvage);
+    if (to_srgb && !salvage) look_through<Sample>(psd, channels);
+    SampleRows<Sample> rows(psd, channels, salvage);
     Image image = blank_image((long long)(psd.width), (long long)(psd.height), psd.bits > 8 ? 16 : 8);
     auto& pixels = std::get<std::vector<Stored<Sample>>>(image.rgba);
     std::vector<Sample> rgba(psd.width * 4);

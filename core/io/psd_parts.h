@@ -51,6 +51,10 @@ struct Psd {
     std::size_t row_bytes() const { return (width * std::size_t(bits) + 7) / 8; }
 };
 
+/// How much may be inflated of channels that are no part of the picture: ten of 8 bits in the largest
+/// picture.
+constexpr std::uint64_t max_psd_bytes_between = std::uint64_t{1} << 30;
+
 /// Throws Error, and checks the picture's size.
 Psd read_psd_sections(Bytes file);
 
@@ -61,6 +65,8 @@ class PsdChannel {
     /// row: row_bytes() long, for big-endian samples. Throws IncompleteFile where the row is missing or
     /// damaged; the next one may be there all the same.
     virtual void read(std::span<std::byte> row) = 0;
+    /// One that goes on from the same row.
+    virtual std::unique_ptr<PsdChannel> copy() const = 0;
 };
 
 struct PsdChannels {
@@ -69,7 +75,9 @@ struct PsdChannels {
     std::optional<IncompleteFile> fault;  ///< that some of the rows, of whichever channels, are missing
 };
 
-/// Throws Error where nothing can be read of the picture.
+/// At their first rows. Looks through the rows that are deflated, so a picture that is read more than once is
+/// read from copies. Throws Error where nothing can be read of the picture, or where more than
+/// max_psd_bytes_between would have to be inflated that are no part of it.
 PsdChannels psd_channels(const Psd& psd);
 
 /// The merged picture as RGBA. With `salvage`, what is missing is clear, or is without that colour; the image

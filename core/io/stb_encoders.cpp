@@ -1,6 +1,7 @@
 // BMP and TGA out through a private copy of stb_image_write, and what describes the colours besides.
 #include <algorithm>
 #include <span>
+#include <string>
 
 #include "io/colours.h"
 #include "io/formats.h"
@@ -44,13 +45,14 @@ void append_bytes(void* out, void* data, int size) {
 
 using StbWriter = int (*)(stbi_write_func*, void*, int, int, int, const void*);
 
-std::vector<std::byte> encode_stb(StbWriter write, const Image& image, bool alpha) {
+std::vector<std::byte> encode_stb(StbWriter write, const std::string& label, const Image& image, bool alpha) {
     const std::size_t channels = alpha ? 4 : 3;
     const std::vector<std::uint8_t> pixels = packed(image, channels);
     std::vector<std::byte> out;
     out.reserve(pixels.size() + 1024);
     if (!write(append_bytes, &out, image.width, image.height, int(channels), pixels.data()))
-        throw Error("cannot be written in this format");
+        throw Error("cannot be written as " + label +
+                    "; expected a picture whose sides fit into that format");
     return out;
 }
 
@@ -90,7 +92,7 @@ std::vector<std::byte> with_profile(Bytes bmp, Bytes icc) {
 }  // namespace
 
 std::vector<std::byte> encode_bmp(const Image& image, const EncodeOptions&) {
-    std::vector<std::byte> out = encode_stb(stbi_write_bmp_to_func, image, has_alpha(image));
+    std::vector<std::byte> out = encode_stb(stbi_write_bmp_to_func, "BMP", image, has_alpha(image));
     const Description& description = image.description;
     if (description.resolution && is_resolution(description.resolution->x, description.resolution->y))
         for (std::size_t i = 0; i < 4; ++i) {
@@ -103,7 +105,7 @@ std::vector<std::byte> encode_bmp(const Image& image, const EncodeOptions&) {
 
 std::vector<std::byte> encode_tga(const Image& image, const EncodeOptions&) {
     const bool alpha = has_alpha(image);
-    std::vector<std::byte> out = encode_stb(stbi_write_tga_to_func, image, alpha);
+    std::vector<std::byte> out = encode_stb(stbi_write_tga_to_func, "TGA", image, alpha);
     append_tga_extension(out, image.description, alpha);
     return out;
 }

@@ -19,13 +19,16 @@
 #include <ctime>
 #include <system_error>
 
+#include "io/descriptor.h"
+
 namespace probewarp {
 
 struct TemporaryEntry {
     enum State : int {
         free,
         changing,  ///< on its way from or to free: whether the file is there is about to be decided
-        standing   ///< the file is there
+        standing,  ///< the file is there, under a name that is ours
+        removed    ///< the signal handler has removed the file, or is about to
     };
     std::atomic<int> state = free;
     int folder = 0;
@@ -35,8 +38,8 @@ struct TemporaryEntry {
 namespace {
 
 constexpr int ending_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU};
-constexpr int numbered =
-    16;  // how many temporary files of one target have a number rather than a random name
+/// So many temporary files of one target have a number in their names, the others a random one.
+constexpr int most_numbered_names = 16;
 constexpr std::string_view ending = ".probewarp-tmp";
 
 std::atomic<bool> is_ending = false;
@@ -57,17 +60,6 @@ class EndingSignalsBlocked {
 
   private:
     sigset_t before_;
-};
-
-struct Descriptor {
-    int fd;
-
-    explicit Descriptor(int number) : fd(number) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (fd >= 0) ::close(fd);
-    }
 };
 
 /// Whether the name in the folder is that of the open file.
@@ -136,7 +128,10 @@ void remove_all() {
             const timespec millisecond{0, 1'000'000};
             ::nanosleep(&millisecond, nullptr);
         }
-        if (entry.state == TemporaryEntry::standing) ::unlinkat(entry.folder, entry.name, 0);
+        // Only one of all that could remove it does: once it is gone, the name may be another program's.
+        int expected = TemporaryEntry::standing;
+        if (entry.state.compare_exchange_strong(expected, TemporaryEntry::removed))
+            ::unlinkat(entry.folder, entry.name, 0);
     }
 }
 
@@ -166,6 +161,13 @@ TemporaryEntry& take_entry() {
     throw SaveError{"too many files are being written at once"};
 }
 
+/// Takes the entry of a file that stands, to remove the file or its name, with the ending signals blocked.
+/// False where the signal handler was faster.
+bool begin_change(TemporaryEntry& entry) {
+    int expected = TemporaryEntry::standing;
+    return entry.state.compare_exchange_strong(expected, TemporaryEntry::changing);
+}
+
 }  // namespace
 
 void fail_saving(int error) { throw SaveError{std::generic_category().message(error)}; }
@@ -191,11 +193,13 @@ TemporaryFile::TemporaryFile(int folder, const std::string& target, mode_t mode)
     : folder_(folder), target_(target) {
     const std::string stem = "." + stem_of(folder, target) + ".";
     const auto numbered_name = [&](int number) { return stem + std::to_string(number).append(ending); };
-    for (int number = 0; number < numbered; ++number) remove_left_over(folder, numbered_name(number).c_str());
+    for (int number = 0; number < most_numbered_names; ++number)
+        remove_left_over(folder, numbered_name(number).c_str());
     const EndingSignalsBlocked blocked;
     entry_ = &take_entry();
     try {
-        for (int number = 0; number < numbered && fd_ < 0; ++number) make(numbered_name(number), mode);
+        for (int number = 0; number < most_numbered_names && fd_ < 0; ++number)
+            make(numbered_name(number), mode);
         for (int tries = 0; tries < 100 && fd_ < 0; ++tries)
             make((stem + hexadecimal(random_number())).append(ending), mode);
         if (fd_ < 0) fail_saving(EEXIST);
@@ -227,8 +231,10 @@ void TemporaryFile::make(const std::string& name, mode_t mode) {
 
 TemporaryFile::~TemporaryFile() {
     const EndingSignalsBlocked blocked;
-    if (!name_.empty()) ::unlinkat(folder_, name_.c_str(), 0);
-    entry_->state = TemporaryEntry::free;
+    if (entry_ && begin_change(*entry_)) {
+        ::unlinkat(folder_, name_.c_str(), 0);
+        entry_->state = TemporaryEntry::free;
+    }
     ::close(fd_);
 }
 
@@ -252,8 +258,19 @@ void TemporaryFile::sync() const {
 }
 
 void TemporaryFile::rename_to_target() {
-    if (::renameat(folder_, name_.c_str(), folder_, target_.c_str()) != 0) fail_saving(errno);
-    name_.clear();
+    {
+        // In one step with the renaming, after which the temporary name may be another program's.
+        const EndingSignalsBlocked blocked;
+        if (begin_change(*entry_)) {
+            const bool renamed = ::renameat(folder_, name_.c_str(), folder_, target_.c_str()) == 0;
+            const int error = errno;
+            entry_->state = renamed ? TemporaryEntry::free : TemporaryEntry::standing;
+            if (!renamed) fail_saving(error);
+            entry_ = nullptr;
+            return;
+        }
+    }
+    wait_if_ending();
 }
 
 }  // namespace probewarp

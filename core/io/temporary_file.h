@@ -53,13 +53,13 @@ class TemporaryFile {
     void restart() const;
     /// Brings the bytes to the disk.
     void sync() const;
-    /// Puts it in the target's place.
+    /// Puts it in the target's place. Nothing else may be called afterwards.
     void rename_to_target();
 
   private:
     void make(const std::string& name, mode_t mode);
 
-    TemporaryEntry* entry_;
+    TemporaryEntry* entry_;  ///< null once the file is renamed
     int folder_, fd_ = -1;
     std::string target_, name_;
 };

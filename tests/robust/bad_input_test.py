@@ -296,6 +296,29 @@ class BadFiles(unittest.TestCase):
         many = files.png_chunk(b"zTXt", b"Comment\0\0" + packed[:100000]) * 500
         self.harmless("many.png", head + many + body)
 
+    def test_the_same_said_very_often(self):
+        # What costs time to look at is looked at once, however often a file says it.
+        icc, _ = files.deflated_zeros(8 << 20)  # more than a profile may have
+        head, body = files.png_header(2, 2, 8, 0), files.png_chunk(b"IDAT", zlib.compress(bytes(6)))
+        profiles = files.png_chunk(b"iCCP", b"Profile\0\0" + icc) * 2000
+        self.harmless("profiles.png", head + profiles + body + files.png_chunk(b"IEND", b""))
+        gif = files.gif(2, 2)
+        block = b"\x21\xff\x0bICCRGBG1012" + (b"\xff" + bytes(255)) * 2000 + b"\0"
+        at = gif.index(b"\x2c", 13)
+        self.harmless("profiles.gif", gif[:at] + block * 40 + gif[at:])
+        jpeg = dict(files.sound(program, self.inputs))["made.jpg"]
+        for marker in b"\xff\xe1\0\2", b"\xff\xe2\0\2":
+            self.refused("markers.jpg", jpeg[:2] + marker * 2000000 + jpeg[2:], "application markers", quick=True)
+
+    def test_channels_that_are_no_part_of_the_picture(self):
+        rows, _ = files.deflated_zeros(1 << 20)  # gigabytes could follow in some megabytes
+        for before in 54, 11:
+            channels = struct.pack(">I", 5) * before + bytes(4)
+            resource = files.psd_resource(1053, channels)
+            self.refused("between.psd", b"8BPS" + struct.pack(">H6xHIIHH", 1, 56, 10000, 10000, 8, 1) + bytes(4)
+                         + struct.pack(">I", len(resource)) + resource + bytes(4) + b"\0\2" + rows,
+                         f"behind {before} large channels", quick=True)
+
     def test_large_pictures_bad_at_the_end(self):
         # As large as is allowed, small as files, and wrong at their ends only: all of the work, and then nothing.
         def late(width, height, bits, colour, interlaced, total):

@@ -37,6 +37,65 @@ File make(const Bmp& bmp) {
 
 File masks(std::uint32_t r, std::uint32_t g, std::uint32_t b) { return join({le(4, r), le(4, g), le(4, b)}); }
 
+// ---- kinds ----
+
+const File red_green_blue = bytes({0, 0, 255, 0, 0, 255, 0, 0, 255, 0, 0, 0});  // a palette
+
+TEST(Bmp, PalettesOfEveryDepth) {
+    const std::vector<Rgba> meaning{red, green, blue, red, blue, green, green, green, red};
+    // Rows from the bottom up, four bytes each.
+    EXPECT_EQ(
+        pixels(decode(make_bmp(9, 1, 8, 0, red_green_blue, bytes({0, 1, 2, 0, 2, 1, 1, 1, 0, 0, 0, 0})))),
+        meaning);
+    EXPECT_EQ(
+        pixels(decode(make_bmp(9, 1, 4, 0, red_green_blue, bytes({0x01, 0x20, 0x21, 0x11, 0x00, 0, 0, 0})))),
+        meaning);
+    const File two = bytes({0, 0, 255, 0, 0, 255, 0, 0});
+    EXPECT_EQ(pixels(decode(make_bmp(3, 2, 1, 0, two, bytes({0b010'00000, 0, 0, 0, 0b110'00000, 0, 0, 0})))),
+              (std::vector<Rgba>{green, green, red, red, green, red}));
+    // The oldest header, three bytes a colour.
+    const File core = bytes({0, 0, 255, 0, 255, 0, 255, 0, 0});
+    EXPECT_EQ(pixels(decode(make_bmp(3, 1, 8, 0, core, bytes({2, 1, 0, 0}), true))),
+              (std::vector<Rgba>{blue, green, red}));
+    // Colours that the palette does not have are black, not what memory held before.
+    EXPECT_EQ(pixels(decode(make_bmp(2, 1, 8, 0, red_green_blue, bytes({255, 3, 0, 0})))),
+              (std::vector<Rgba>{black, black}));
+}
+
+TEST(Bmp, TrueColourAndMasks) {
+    const Image image = decode(make_bmp(1, -2, 24, 0, {}, bytes({0, 0, 255, 0, 255, 0, 0, 0})));
+    EXPECT_EQ(pixels(image), (std::vector<Rgba>{red, blue})) << "negative height: from the top down";
+    EXPECT_EQ(image.description.resolution, (Resolution{2000, 3000}));
+    EXPECT_EQ(pixels(decode(make_bmp(2, 1, 16, 0, {}, bytes({0x00, 0x7C, 0xE0, 0x03})))),
+              (std::vector<Rgba>{red, green}));
+    const File masks565 = join({le(4, 0xF800), le(4, 0x07E0), le(4, 0x001F)});
+    EXPECT_EQ(pixels(decode(make_bmp(2, 1, 16, 3, masks565, bytes({0x00, 0xF8, 0x1F, 0x00})))),
+              (std::vector<Rgba>{red, blue}));
+    const File masks4444 = join({le(4, 0x0F00), le(4, 0x00F0), le(4, 0x000F), le(4, 0xF000)});
+    EXPECT_EQ(pixels(decode(make_bmp(2, 1, 16, 6, masks4444, bytes({0x12, 0x80, 0xFF, 0x0F})))),
+              (std::vector<Rgba>{{0, 17, 34, 136}, {255, 255, 255, 0}}));
+    // 32 bits without masks: the fourth byte means nothing.
+    EXPECT_EQ(pixels(decode(make_bmp(2, 1, 32, 0, {}, bytes({1, 2, 3, 0, 4, 5, 6, 9})))),
+              (std::vector<Rgba>{{3, 2, 1, 255}, {6, 5, 4, 255}}));
+    EXPECT_EQ(pixels(decode(make_bmp(2, 1, 32, 0, {}, bytes({1, 2, 3, 0, 4, 5, 6, 0})))),
+              (std::vector<Rgba>{{3, 2, 1, 255}, {6, 5, 4, 255}}));
+}
+
+TEST(Bmp, BadOnesAreRefused) {
+    const File row = bytes({0, 0, 0, 0});
+    expect_refused(make_bmp(1, 1, 7, 0, {}, row), "a.bmp", "is damaged (it has 7 bits a pixel)");
+    expect_refused(make_bmp(1, 1, 8, 0, bytes({0}), row), "a.bmp", "it has no palette");
+    expect_refused(make_bmp(1, 1, 4, 1, red_green_blue, row), "a.bmp", "does not go with 4 bits a pixel");
+    expect_refused(make_bmp(40000, 1, 24, 0, {}, row), "a.bmp", "is 40000 x 1 pixels");
+    expect_refused(make_bmp(-1, 1, 24, 0, {}, row), "a.bmp", "is -1 x 1 pixels");
+    expect_refused(make_bmp(1, std::numeric_limits<int>::min(), 24, 0, {}, row), "a.bmp",
+                   "is 1 x 2147483648 pixels");
+    expect_refused(make_bmp(9000, 9000, 24, 0, {}, row), "a.bmp", "is truncated");
+    const File scattered = join({le(4, 0xF00F), le(4, 0x07E0), le(4, 0x001F)});
+    expect_refused(make_bmp(1, 1, 16, 3, scattered, bytes({0xFF, 0xFF, 0, 0})), "a.bmp",
+                   "do not stand together");
+}
+
 // ---- headers and palettes ----
 
 TEST(Bmp, HeadersOfEveryLength) {
@@ -97,6 +156,27 @@ TEST(Bmp, PixelsFollowThePaletteWhereTheirOffsetForgetsIt) {
                                   .pixels = bytes({0, 0xF8, 0, 0}),
                                   .offset = 0}))),
               (std::vector<Rgba>{red}));
+    // Above 8 bits a palette is a hint, which is counted here and not there.
+    for (const int bits : {24, 32}) {
+        const File pixel = bytes({0, 0, 255, 0});
+        for (const int colours : {1, 256})
+            for (const File& behind : {File{}, File(2000)})
+                EXPECT_EQ(
+                    pixels(decode(make({.bits = bits, .colours = colours, .pixels = join({pixel, behind})}))),
+                    (std::vector<Rgba>{red}));
+        EXPECT_EQ(pixels(decode(
+                      make({.bits = bits, .colours = 3, .between = palette, .pixels = pixel, .offset = 0}))),
+                  (std::vector<Rgba>{red}))
+            << "no offset, and the hint there";
+    }
+    EXPECT_EQ(pixels(decode(make({.bits = 16,
+                                  .compression = 3,
+                                  .colours = 256,
+                                  .between = masks(0xF800, 0x7E0, 0x1F),
+                                  .pixels = bytes({0, 0xF8, 0, 0}),
+                                  .offset = 54}))),
+              (std::vector<Rgba>{red}))
+        << "masks are no hint";
     const File gap = join({File(7), bytes({0, 0, 255, 0})});
     EXPECT_EQ(pixels(decode(make({.pixels = gap, .offset = 54 + 7}))), (std::vector<Rgba>{red}));
     expect_refused(make({.pixels = bytes({1, 2, 3, 0}), .offset = 40}), "a.bmp",

@@ -13,6 +13,7 @@
 #include <fstream>
 
 #include "io/same_file.h"
+#include "io/temporary_file.h"
 #include "pictures.h"
 #include "temporary_folder.h"
 
@@ -224,6 +225,71 @@ TEST_F(FileTest, RemovesWhatAKilledProgramLeftOfTheSameFileOnly) {
     EXPECT_FALSE(fs::exists(folder.path / own));
     EXPECT_TRUE(fs::exists(folder.path / other));
     EXPECT_EQ(names_in(folder.path).size(), 3u);
+}
+
+// What is signalled runs in a process of its own, which ends by the signal.
+
+TEST_F(FileTest, ASignalRemovesATemporaryFileAndKeepsTheOldOne) {
+    put("old");
+    const auto signalled = [&] {
+        remove_temporary_files_on_signals();
+        FileWriter writer(path);
+        writer.write(bytes_of("new"));
+        std::raise(SIGTERM);
+    };
+    EXPECT_EXIT(signalled(), ::testing::KilledBySignal(SIGTERM), "");
+    EXPECT_EQ(got(), "old");
+    EXPECT_EQ(names_in(folder.path), std::vector<std::string>{"file"});
+}
+
+TEST_F(FileTest, ASignalLeavesANameThatIsNoLongerOurs) {
+    const std::string name = left_over(path);
+    ASSERT_FALSE(name.empty());
+    const auto finished = [&](bool destroyed) {
+        remove_temporary_files_on_signals();
+        auto writer = std::make_unique<FileWriter>(path);
+        writer->write(bytes_of("new"));
+        writer->finish();
+        if (destroyed) writer.reset();
+        std::ofstream(folder.path / name) << "another program's";
+        std::raise(SIGTERM);
+    };
+    for (const bool destroyed : {false, true}) {
+        put("old");
+        EXPECT_EXIT(finished(destroyed), ::testing::KilledBySignal(SIGTERM), "");
+        EXPECT_EQ(got(), "new");
+        EXPECT_TRUE(fs::exists(folder.path / name)) << destroyed;
+        fs::remove(folder.path / name);
+    }
+}
+
+TEST_F(FileTest, ASignalRemovesATemporaryFileThatFollowedARenamedOne) {
+    const auto followed = [&] {
+        remove_temporary_files_on_signals();
+        auto first = std::make_unique<FileWriter>(path);
+        first->write(bytes_of("new"));
+        first->finish();
+        FileWriter second(folder.path / "second");
+        first.reset();
+        std::raise(SIGTERM);
+    };
+    EXPECT_EXIT(followed(), ::testing::KilledBySignal(SIGTERM), "");
+    EXPECT_EQ(got(), "new");
+    EXPECT_EQ(names_in(folder.path), std::vector<std::string>{"file"});
+}
+
+TEST_F(FileTest, ATemporaryFileThatCannotBeRenamedIsRemoved) {
+    FileWriter writer(path);
+    writer.write(bytes_of("new"));
+    fs::create_directory(path);
+    EXPECT_THAT(error_of([&] { writer.finish(); }), HasSubstr("cannot save"));
+    EXPECT_EQ(names_in(folder.path).size(), 2u);
+    const auto signalled = [] {
+        remove_temporary_files_on_signals();
+        std::raise(SIGTERM);
+    };
+    EXPECT_EXIT(signalled(), ::testing::KilledBySignal(SIGTERM), "");
+    EXPECT_EQ(names_in(folder.path), std::vector<std::string>{"file"});
 }
 
 TEST_F(FileTest, ManyMayWriteTheSameFileAtOnce) {

@@ -207,5 +207,26 @@ TEST(Jpeg, UnusualKindsAreNamed) {
     expect_refused(file, "a.jpg", "is of an unusual kind (Unsupported JPEG process: SOF type 0xc3)");
 }
 
+TEST(Jpeg, MarkersWithoutEndAreRefused) {
+    // libjpeg looks through all that it has kept for each one more.
+    const File file = make_jpeg(8, 8, 1, JCS_GRAYSCALE, std::vector<std::uint8_t>(64, 9));
+    const auto with = [&](int type, int count) {
+        File markers;
+        for (int i = 0; i < count; ++i) markers += bytes({0xFF, type, 0, 2});
+        return with_marker(file, join({markers, exif_marker(1, 10)}));
+    };
+    for (const int type : {0xE1, 0xE2}) {
+        const Image image = decode(with(type, 9'999));
+        EXPECT_EQ(pixels(image), pixels(decode(file)));
+        EXPECT_EQ(image.description.resolution, (Resolution{1000, 1000}));
+        for (const bool salvage : {false, true})
+            EXPECT_THROW(decode_picture(with(type, 10'000), "a.jpg", Pixels::whole, {.salvage = salvage}),
+                         Error);
+        expect_refused(with(type, 10'000), "a.jpg",
+                       "a.jpg: has far more application markers than a picture needs; expected a usual JPEG");
+    }
+    EXPECT_EQ(pixels(decode(with(0xED, 50'000))), pixels(decode(file))) << "these are not kept";
+}
+
 }  // namespace
 }  // namespace probewarp

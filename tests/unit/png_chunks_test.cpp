@@ -140,6 +140,12 @@ TEST(PngChunks, TheFirstOfTwoCounts) {
     EXPECT_EQ(twice("sRGB", bytes({1}), bytes({2})).srgb_intent, std::uint8_t{1});
     EXPECT_EQ(twice("cICP", bytes({9, 16, 0, 1}), bytes({1, 1, 0, 1})).cicp,
               (std::array<std::uint8_t, 4>{9, 16, 0, 1}));
+    const auto profile = [](const File& icc) { return join({bytes({'n', 0, 0}), deflated(icc)}); };
+    EXPECT_EQ(twice("iCCP", profile(File(200, std::byte{7})), profile(File(300))).icc,
+              File(200, std::byte{7}));
+    // Unlike a number, a profile takes time to look at: the second is not, whatever is wrong with the first.
+    EXPECT_EQ(twice("iCCP", profile(File((4 << 20) + 1)), profile(File(300))).icc, File{});
+    EXPECT_EQ(twice("iCCP", bytes_of("junk"), profile(File(300))).icc, File{});
     const auto size = [](std::uint64_t x, std::uint64_t y, int unit) {
         return join({be(4, x), be(4, y), bytes({unit})});
     };

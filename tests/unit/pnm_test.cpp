@@ -1,4 +1,4 @@
-// Netpbm's PAM and PFM, and what P1 to P6 have besides what stb_formats_test.cpp asks of them.
+// Netpbm's P1 to P6, PAM and PFM.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -13,8 +13,40 @@ namespace {
 using namespace testing;
 
 constexpr Rgba black{0, 0, 0, 255}, white{255, 255, 255, 255}, clear{0, 0, 0, 0};
+constexpr Rgba red{255, 0, 0, 255}, blue{0, 0, 255, 255};
 
 std::vector<Rgba> of(std::string_view text) { return pixels(decode(bytes_of(text))); }
+
+TEST(Pnm, OfEveryKind) {
+    EXPECT_EQ(of("P1 # a comment\n3 1\n1 0\n1"), (std::vector<Rgba>{black, white, black}));
+    EXPECT_EQ(of("P1\n3 1\n101"), (std::vector<Rgba>{black, white, black}));
+    EXPECT_EQ(of("P2\n2 1\n4\n0#x\n1\n"), (std::vector<Rgba>{black, {64, 64, 64, 255}}));
+    EXPECT_EQ(of("P3 1 2 255 255 0 0 0 0 255 "), (std::vector<Rgba>{red, blue}));
+    EXPECT_EQ(of("P4\n9 2\n\x80\x80\x7f\x7f"), ([&] {
+                  std::vector<Rgba> all(18, white);
+                  all[0] = all[8] = black;
+                  for (std::size_t i = 10; i < 17; ++i) all[i] = black;
+                  return all;
+              }()));
+    EXPECT_EQ(of("P5 2 1 255\n\x01\xfe"), (std::vector<Rgba>{{1, 1, 1, 255}, {254, 254, 254, 255}}));
+    EXPECT_EQ(of("P6 1 1 100\nd2#"), (std::vector<Rgba>{{255, 128, 89, 255}}));
+    const Image deep = decode(bytes_of("P6 1 1 65535\n\x01\x02\x03\x04\x05\x06"));
+    EXPECT_EQ(deep.bits(), 16);
+    EXPECT_EQ(pixels(deep), (std::vector<Rgba>{{258, 772, 1286, 65535}}));
+    EXPECT_EQ(decode(bytes_of("P2 1 1 256 256 ")).bits(), 16);
+}
+
+TEST(Pnm, BadOnesAreRefused) {
+    expect_refused(bytes_of("P5 2 1 0\n\x01\x01"), "a.pgm", "its highest sample is not 1 to 65535");
+    expect_refused(bytes_of("P5 2 1 65536\n\x01\x01"), "a.pgm", "its highest sample is not 1 to 65535");
+    expect_refused(bytes_of("P5 2 -1 255\n\x01\x01"), "a.pgm", "a number is missing");
+    expect_refused(bytes_of("P5 2 99999999999 255\n\x01\x01"), "a.pgm", "a number is too large");
+    expect_refused(bytes_of("P5 0 1 255\n\x01\x01"), "a.pgm", "is 0 x 1 pixels");
+    expect_refused(bytes_of("P1 2 1\n12\n"), "a.pbm", "a bit is neither 0 nor 1");
+    for (const char kind : {'1', '2', '3', '4', '5', '6'})
+        expect_refused(bytes_of(std::string("P").append(1, kind).append(" 9000 9000 255\n1")), "a.pnm",
+                       "is truncated");
+}
 
 TEST(Pnm, CommentsAnywhereInTheHeader) {
     EXPECT_EQ(of("P5#a\n#b\n2#c\n#d\n 1 # e\n255#f\n\x01\x02"),

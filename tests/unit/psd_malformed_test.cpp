@@ -65,6 +65,31 @@ TEST(PsdMalformed, BadDeflatedOnesAreRefused) {
     EXPECT_EQ(pixels(decode(zip(deflate_bomb(64)))), std::vector<Rgba>(2, Rgba{0, 0, 0, 255}));
 }
 
+TEST(PsdMalformed, TransparencyBehindAGigabyteOfOtherChannelsIsRefused) {
+    // Zeros for the first channel: without the limit, gigabytes could follow in a file of some megabytes.
+    const auto psd = [](int before, int compression, const File& rows) {
+        File ids;
+        for (int i = 0; i < before; ++i) ids += be(4, 5);
+        return make_psd({.mode = 1,
+                         .channels = 56,
+                         .width = 10000,
+                         .height = 10000,
+                         .rows = rows,
+                         .compression = compression,
+                         .resources = psd_resource(1053, join({ids, be(4, 0)}))});
+    };
+    for (const int compression : {2, 3}) {
+        const File rows = deflated(File(20'000));
+        expect_refused(
+            psd(11, compression, rows), "a.psd",
+            "a.psd: has its transparency behind 11 large channels that are deflated and no part of "
+            "the picture; expected a PSD that has it right behind the colours");
+        expect_refused(psd(54, compression, rows), "a.psd", "behind 54 large channels");
+        expect_refused(psd(10, compression, rows), "a.psd", "pixels are missing");
+    }
+    expect_refused(psd(54, 0, File(20'000)), "a.psd", "is truncated");  // passing over these costs nothing
+}
+
 TEST(PsdMalformed, EachCutIsRefused) {
     const PsdSpec raw{.bits = 16,
                       .channels = 4,

@@ -306,6 +306,22 @@ TEST(Psd, AlphaMergedOntoWhiteInOtherModes) {
     EXPECT_EQ(one(1, 32, join({be_float(0.75f), be_float(0.5f)})), (Rgba{half, half, half, 32768}));
 }
 
+TEST(Psd, DeflatedChannelsAreReadAgainFromTheirBeginnings) {
+    // Two rows of inks on white: looked through for white, for damage, and then read. Before the alpha stands
+    // a channel that is no part of the picture.
+    const File planes = bytes({127, 0, 255, 255, 200, 0, 255, 255, 9, 9, 128, 255});
+    const File resources = psd_resource(1053, join({be(4, 7), be(4, 0)}));
+    const std::vector<Rgba> meaning{{0, 255, 145, 128}, {0, 255, 0, 255}};
+    for (const int compression : {0, 2})
+        EXPECT_EQ(pixels(decode(make_psd({.mode = 4,
+                                          .channels = 6,
+                                          .height = 2,
+                                          .rows = compression == 0 ? planes : deflated(planes),
+                                          .compression = compression,
+                                          .resources = resources}))),
+                  meaning);
+}
+
 // ---- what a file says about itself ----
 
 File pixel_aspect(double aspect) {

@@ -51,6 +51,39 @@ File extended(const File& file, const Extension& extension) {
     return join({file, area, le(4, file.size()), le(4, 0), bytes_of("TRUEVISION-XFILE."), bytes({0})});
 }
 
+// ---- kinds ----
+
+TEST(Tga, OfEveryKind) {
+    const auto of = [](int type, int bits, int descriptor, const File& data) {
+        return pixels(decode(make_tga(2, 2, type, bits, descriptor, data), "a.tga"));
+    };
+    const File rows = bytes({0, 0, 255, 0, 255, 0, 255, 0, 0, 0, 0, 0});
+    EXPECT_EQ(of(2, 24, 0, rows), (std::vector<Rgba>{blue, black, red, green})) << "from the bottom up";
+    EXPECT_EQ(of(2, 24, 0x20, rows), (std::vector<Rgba>{red, green, blue, black})) << "from the top down";
+    EXPECT_EQ(of(2, 24, 0x30, rows), (std::vector<Rgba>{green, red, black, blue})) << "from right to left";
+    EXPECT_EQ(of(2, 32, 0x28, bytes({1, 2, 3, 4, 1, 2, 3, 4, 1, 2, 3, 4, 5, 6, 7, 0})).back(),
+              (Rgba{7, 6, 5, 0}));
+    EXPECT_EQ(of(3, 8, 0x20, bytes({1, 2, 3, 4}))[2], (Rgba{3, 3, 3, 255}));
+    EXPECT_EQ(of(2, 16, 0x20, bytes({0, 0x7C, 0xE0, 3, 0x1F, 0, 0, 0})),
+              (std::vector<Rgba>{red, green, blue, black}));
+    // A run of three, then one by itself; runs may go on in the next row.
+    EXPECT_EQ(of(10, 24, 0x20, bytes({0x82, 0, 0, 255, 0, 255, 0, 0})),
+              (std::vector<Rgba>{red, red, red, blue}));
+}
+
+TEST(Tga, PaletteThatStartsLate) {
+    // Two colours, the first of which has number 5.
+    const File file = join({bytes({3, 1, 1}), le(2, 5), le(2, 2), bytes({24, 0, 0, 0, 0}), le(2, 2), le(2, 1),
+                            bytes({8, 0x20}), bytes_of("an!"), bytes({0, 0, 255, 0, 255, 0}), bytes({6, 5})});
+    EXPECT_EQ(pixels(decode(file, "a.tga")), (std::vector<Rgba>{green, red}));
+}
+
+TEST(Tga, BadOnesAreRefused) {
+    expect_refused(make_tga(60000, 1, 2, 24, 0, bytes({1})), "a.tga", "is 60000 x 1 pixels");
+    expect_refused(make_tga(9000, 9000, 10, 24, 0, bytes({0xFF, 1, 2, 3})), "a.tga", "is truncated");
+    expect_refused(make_tga(0, 1, 2, 24, 0, bytes({1})), "a.tga", "is not a picture");
+}
+
 // ---- alpha ----
 
 TEST(Tga, AlphaOnlyWhereTheDescriptorSaysSo) {
