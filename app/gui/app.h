@@ -56,6 +56,7 @@ struct ExportDialog {
     float background[3] = {1, 1, 1};
     EncodeOptions encode;  ///< the quality of JPEG, the compression of PNG
     PathField path;
+    bool types_path = false;  ///< the path takes the keyboard in the next frame
 };
 
 /// The dialog that asks for levels.

@@ -58,12 +58,12 @@ std::string export_trouble(const App& app) {
     const std::filesystem::path path = export_path(app);
     const ImageFormat* format = image_format_of(path);
     if (auto reason = why_not_deformed(app); !reason.empty()) return reason;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) return "This is a folder: type a name behind it.";
     if (!has_stem(path)) return "The file needs a name before its ending.";
     if (!is_obj(path) && (!format || !format->encode))
         return "The name must end with .png, .jpg, .bmp, .tga or .obj.";
-    std::error_code ignored;
     if (!std::filesystem::is_directory(path.parent_path(), ignored)) return "There is no such folder.";
-    if (std::filesystem::is_directory(path, ignored)) return "This is a folder.";
     for (const std::filesystem::path& file : written_files(path))
         if (is_being_read(app, file))
             return file == path
@@ -268,7 +268,7 @@ void browse_for_export(App& app) {
 /// The path's row. Returns whether Return was pressed in it.
 bool draw_export_path(App& app, bool appearing) {
     row_label(app, "File", 92);
-    if (appearing) ImGui::SetKeyboardFocusHere();
+    if (std::exchange(app.export_dialog.types_path, false) || appearing) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - app.px(96));
     const bool entered =
         ImGui::InputText("##path", &app.export_dialog.path.text,
@@ -289,6 +289,11 @@ void draw_export_remark(App& app, const std::string& trouble, bool replaces) {
     const std::filesystem::path path = export_path(app);
     if (remark.empty() && replaces)
         remark = fmt::format("{} is there already: {}.", path.filename().string(), age_and_size(path));
+    if (remark.empty() && is_obj(path)) {
+        const ObjCompanions beside = obj_companions(path);
+        remark = fmt::format("{} vertices; beside it {} and {}.", mesh_of(app.editor.deformation).rest.size(),
+                             beside.material.filename().string(), beside.texture.filename().string());
+    }
     if (remark.empty()) {
         const View view = export_view(app.editor.deformation, app.export_dialog.settings);
         remark = fmt::format("{} × {} pixels, {} bits a channel", view.width, view.height,
@@ -324,6 +329,8 @@ void draw_export_dialog(App& app) {
         accent_button(app, action, {app.px(108), app.px(28)}, nullptr, trouble.empty()) && trouble.empty();
     if (clicked || (entered && trouble.empty() && !replaces))
         begin_export(app);
+    else if (entered && !trouble.empty())
+        dialog.types_path = true;
     else if (entered && replaces)
         ask_before_replacing(app, export_path(app), &begin_export);
     draw_doubt(app);

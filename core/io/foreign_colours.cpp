@@ -16,19 +16,14 @@ struct ToSrgb::Transform {
 
 namespace {
 
-bool are_inks(ForeignColours colours) {
-    return colours == ForeignColours::cmyk || colours == ForeignColours::cmyk_inverted;
-}
-
 // ---- the plain conversion of inks, without a profile ----
 
 template <class Sample>
-void from_inks(std::span<Sample> samples, bool inverted) {
+void from_inks(std::span<Sample> samples) {
     constexpr std::uint32_t all = full<Sample>;
     for (std::size_t i = 0; i < samples.size(); i += 4) {
-        const auto light = [&](std::size_t k) { return inverted ? samples[i + k] : all - samples[i + k]; };
-        const std::uint32_t k = light(3);
-        for (std::size_t c = 0; c < 3; ++c) samples[i + c] = Sample((light(c) * k + all / 2) / all);
+        const std::uint32_t k = samples[i + 3];
+        for (std::size_t c = 0; c < 3; ++c) samples[i + c] = Sample((samples[i + c] * k + all / 2) / all);
     }
 }
 
@@ -82,8 +77,6 @@ cmsUInt32Number bytes_of(int bits) {
 cmsUInt32Number layout_of(ForeignColours colours, int bits) {
     switch (colours) {
         case ForeignColours::cmyk:
-            return COLORSPACE_SH(PT_CMYK) | CHANNELS_SH(4) | bytes_of(bits);
-        case ForeignColours::cmyk_inverted:
             return COLORSPACE_SH(PT_CMYK) | CHANNELS_SH(4) | FLAVOR_SH(1) | bytes_of(bits);
         case ForeignColours::lab:
             return COLORSPACE_SH(PT_Lab) | CHANNELS_SH(3) | EXTRA_SH(1) | bytes_of(bits);
@@ -95,7 +88,7 @@ cmsUInt32Number layout_of(ForeignColours colours, int bits) {
 
 /// Lab is converted step by step: the table that Little CMS would make of it is wrong by up to 30 of 255.
 cmsUInt32Number flags_of(ForeignColours colours) {
-    return are_inks(colours) ? cmsFLAGS_BLACKPOINTCOMPENSATION : cmsFLAGS_NOOPTIMIZE;
+    return colours == ForeignColours::cmyk ? cmsFLAGS_BLACKPOINTCOMPENSATION : cmsFLAGS_NOOPTIMIZE;
 }
 
 }  // namespace
@@ -113,10 +106,9 @@ std::unique_ptr<const ToSrgb::Transform> ToSrgb::transform_of(ForeignColours col
     return made->transform ? std::move(made) : nullptr;
 }
 
-ToSrgb::ToSrgb(ForeignColours colours, Bytes icc, int bits)
-    : colours_(colours), transform_(transform_of(colours, icc, bits)) {
+ToSrgb::ToSrgb(ForeignColours colours, Bytes icc, int bits) : transform_(transform_of(colours, icc, bits)) {
     if (!transform_) transform_ = transform_of(colours, {}, bits);  // where the profile is of no use
-    if (!transform_ && !are_inks(colours)) throw std::bad_alloc();
+    if (!transform_ && colours != ForeignColours::cmyk) throw std::bad_alloc();
 }
 
 ToSrgb::~ToSrgb() = default;
@@ -131,7 +123,7 @@ void ToSrgb::convert_all(std::span<Sample> samples) const {
                               cmsDoTransform(transform_->transform.get(), some.data(), some.data(),
                                              cmsUInt32Number(part.size()));
                           else if constexpr (!std::is_floating_point_v<Sample>)
-                              from_inks(some, colours_ == ForeignColours::cmyk_inverted);
+                              from_inks(some);
                       });
     for (std::size_t i = 3; i < samples.size(); i += 4) samples[i] = full<Sample>;
 }

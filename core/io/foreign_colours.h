@@ -16,8 +16,7 @@ template <class Sample>
 constexpr Sample full = std::is_floating_point_v<Sample> ? Sample(1) : std::numeric_limits<Sample>::max();
 
 enum class ForeignColours {
-    cmyk,           ///< ink, full is dark
-    cmyk_inverted,  ///< as Adobe's programs store it: full is no ink
+    cmyk,  ///< printing inks, as Adobe's programs store them: full is no ink
     /// CIE L*a*b* under D50, as ICC profiles of version 4 have it: L of 100 is full, and the 256 numbers from
     /// -128 to 127 of a and b go from 0 to full. The fourth sample means nothing.
     lab,
@@ -45,7 +44,6 @@ class ToSrgb {
     template <class Sample>
     void convert_all(std::span<Sample> samples) const;
 
-    ForeignColours colours_;
     std::unique_ptr<const Transform> transform_;  ///< null: the plain formula
 };
 

@@ -248,9 +248,8 @@ class JpegReader final : public RowReader {
   public:
     JpegReader(Bytes bytes, const DecodeOptions& options) : decoder_(begin_decoding(bytes, options.salvage)) {
         const jpeg_decompress_struct& jpeg = decoder_->jpeg;
-        if (jpeg.out_color_space == JCS_CMYK)
-            to_srgb_.emplace(jpeg.saw_Adobe_marker ? ForeignColours::cmyk_inverted : ForeignColours::cmyk,
-                             decoder_->profile());
+        // Full is no ink with Adobe's marker and, as other readers have it, without.
+        if (jpeg.out_color_space == JCS_CMYK) to_srgb_.emplace(ForeignColours::cmyk, decoder_->profile());
         exif_ = read_exif(jpeg);  // before the end of decoding takes the markers away
         walk_ = upright_walk(exif_.orientation, jpeg.output_width, jpeg.output_height);
     }

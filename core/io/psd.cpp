@@ -26,8 +26,8 @@ bool is_missing(const Psd& psd, const Image& image) {
 }
 
 Error no_merged_picture(const Psd& psd) {
-    return Error("was saved without a merged picture; expected a " + psd.label() +
-                 " saved with Photoshop's \"Maximize Compatibility\"");
+    return Error("was saved without a merged picture; expected one: save the " + psd.label() +
+                 " again in Photoshop with \"Maximize Compatibility\"");
 }
 
 /// What other than sRGB the pixels of that image are.

@@ -140,7 +140,7 @@ template <class Sample>
 std::unique_ptr<const ToSrgb> conversion(const Psd& psd) {
     const int bits = int(sizeof(Sample)) * 8;
     if (psd.mode == PsdMode::cmyk || psd.mode == PsdMode::multichannel)
-        return std::make_unique<ToSrgb>(ForeignColours::cmyk_inverted, psd.icc, bits);
+        return std::make_unique<ToSrgb>(ForeignColours::cmyk, psd.icc, bits);
     if (psd.mode == PsdMode::lab) return std::make_unique<ToSrgb>(ForeignColours::lab, psd.icc, bits);
     if (psd.bits == 32) return std::make_unique<ToSrgb>(ForeignColours::linear_rgb, psd.icc, bits);
     return nullptr;

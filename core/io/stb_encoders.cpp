@@ -1,5 +1,6 @@
 // BMP and TGA out through a private copy of stb_image_write, and what describes the colours besides.
 #include <algorithm>
+#include <array>
 #include <span>
 #include <string>
 
@@ -60,10 +61,15 @@ void append_le32(std::vector<std::byte>& out, std::size_t value) {
     for (std::size_t i = 0; i < 4; ++i, value >>= 8) out.push_back(std::byte(value & 255));
 }
 
-/// The same BMP with a header of the fifth version, and the profile behind its pixels.
-std::vector<std::byte> with_profile(Bytes bmp, Bytes icc) {
+constexpr std::size_t embedded_profile = 0x4D424544, srgb = 0x73524742;  // BMP's kinds of colours
+
+/// BMP's bit for each of ICC's rendering intents.
+constexpr std::array<std::size_t, 4> intent_bits{4, 2, 1, 8};
+
+/// The same BMP with a header of the fifth version that says what its colours are. intent: one of
+/// intent_bits; icc: stands behind the pixels; empty: none
+std::vector<std::byte> with_colours(Bytes bmp, std::size_t kind, std::size_t intent, Bytes icc) {
     constexpr std::size_t file_header = 14, version_1 = 40, version_5 = 124;
-    constexpr std::size_t embedded = 0x4D424544, perceptual = 4;
     const std::size_t header = le32(bmp, file_header);
     const Bytes pixels = bmp.subspan(le32(bmp, 10));
     const std::size_t profile_at = version_5 + pixels.size();
@@ -78,10 +84,10 @@ std::vector<std::byte> with_profile(Bytes bmp, Bytes icc) {
     append(bmp.subspan(file_header + 4, version_1 - 4));
     if (header > version_1) append(bmp.subspan(file_header + version_1, 16));  // masks
     out.resize(file_header + 56);
-    append_le32(out, embedded);
-    out.resize(file_header + 108);  // no endpoints and no gamma: the profile says more
-    append_le32(out, perceptual);
-    append_le32(out, profile_at);
+    append_le32(out, kind);
+    out.resize(file_header + 108);  // no endpoints and no gamma: these colours need none
+    append_le32(out, intent);
+    append_le32(out, icc.empty() ? 0 : profile_at);
     append_le32(out, icc.size());
     append_le32(out, 0);
     append(pixels);
@@ -100,7 +106,10 @@ std::vector<std::byte> encode_bmp(const Image& image, const EncodeOptions&) {
             out[42 + i] = std::byte(description.resolution->y >> (8 * i) & 255);
         }
     const std::vector<std::byte> icc = profile_of(description);
-    return icc.empty() ? out : with_profile(out, icc);
+    if (!icc.empty()) return with_colours(out, embedded_profile, intent_bits[0], icc);
+    if (description.srgb_intent && *description.srgb_intent < intent_bits.size())
+        return with_colours(out, srgb, intent_bits[*description.srgb_intent], {});
+    return out;
 }
 
 std::vector<std::byte> encode_tga(const Image& image, const EncodeOptions&) {

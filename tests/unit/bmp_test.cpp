@@ -392,8 +392,13 @@ TEST(Bmp, AProfileIsWrittenAndReadBack) {
     Image image{1, 1, std::vector<std::uint8_t>(4, 255), {}};
     image.description.gamma = 100000;
     EXPECT_GT(decode(encode(image, "bmp")).description.icc.size(), 300u);
-    image.description.srgb_intent = 0;
-    EXPECT_EQ(decode(encode(image, "bmp")).description, Description{}) << "sRGB needs no word";
+    for (const int intent : {0, 1, 2, 3}) {
+        image.description.srgb_intent = std::uint8_t(intent);
+        const Image back = decode(encode(image, "bmp"));
+        EXPECT_EQ(back.description.srgb_intent, intent);
+        EXPECT_TRUE(back.description.icc.empty());
+        EXPECT_EQ(pixels(back), pixels(image));
+    }
 }
 
 // ---- files that end too soon ----

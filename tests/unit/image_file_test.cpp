@@ -388,7 +388,8 @@ TEST(ImageFile, JpegOfEveryKind) {
     near(one_colour(JCS_CMYK, {200, 100, 50, 128},
                     [](jpeg_compress_struct& j) { jpeg_set_colorspace(&j, JCS_YCCK); }),
          {100, 50, 25, 255});
-    near(one_colour(JCS_CMYK, {55, 155, 205, 127},
+    // So do other readers without its marker.
+    near(one_colour(JCS_CMYK, {200, 100, 50, 128},
                     [](jpeg_compress_struct& j) { j.write_Adobe_marker = FALSE; }),
          {100, 50, 25, 255});
 }
