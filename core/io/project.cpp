@@ -271,6 +271,7 @@ struct Opened {
 
 Opened open_project(std::vector<std::byte> bytes) {
     if (const auto what = unread_archive(bytes)) throw Error(*what);
+    settle_streamed_members(bytes);
     Archive archive = open_archive(bytes);
     bytes = {};  // the picture's pixels need the room
     Parsed parsed = parse_project(archive.bytes_of("project.json"));

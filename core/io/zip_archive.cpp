@@ -80,20 +80,24 @@ std::uint64_t promised_members(const Records& records, std::size_t at) {
     return std::max(records.number(end64 + 24, 8), records.number(end64 + 32, 8));
 }
 
+/// Calls `visit` with the place of each record whose comment ends with the file: one of them is the end
+/// record, and a picture's bytes may look like another.
+template <class Visit>
+void each_end_record(const Records& records, const Visit& visit) {
+    constexpr std::size_t longest_comment = 0xffff;
+    const std::size_t size = records.bytes.size();
+    for (std::size_t at = size - std::min(size, end_size + longest_comment); at + end_size <= size; ++at)
+        if (records.is(at, end_record) && at + end_size + records.number(at + 20, 2) == size) visit(at);
+}
+
 /// Refuses an archive whose end promises more members than fit, before libzip makes room for them all.
 void check_directory(std::span<const std::byte> bytes) {
-    constexpr std::size_t longest_comment = 0xffff;
     if (bytes.size() < end_size) throw Error("is truncated; expected a whole ZIP archive");
     const Records records{bytes};
-    const std::size_t first = bytes.size() - std::min(bytes.size(), end_size + longest_comment);
-    for (std::size_t at = first; at + end_size <= bytes.size(); ++at) {
-        // The end record is the one whose comment ends with the file: a picture's bytes may look like one
-        // too.
-        if (!records.is(at, end_record) || at + end_size + records.number(at + 20, 2) != bytes.size())
-            continue;
+    each_end_record(records, [&](std::size_t at) {
         if (promised_members(records, at) > max_zip_members)
             throw Error(fmt::format("has too many members; expected at most {}", max_zip_members));
-    }
+    });
 }
 
 Owned<zip_t> open_for_reading(std::span<const std::byte> bytes) {
@@ -197,6 +201,28 @@ std::vector<std::byte> read_member(zip_t* archive, const Entry& entry) {
 bool is_zip(std::span<const std::byte> bytes) {
     constexpr std::byte magic[] = {std::byte{'P'}, std::byte{'K'}, std::byte{3}, std::byte{4}};
     return bytes.size() >= 4 && std::equal(std::begin(magic), std::end(magic), bytes.begin());
+}
+
+void settle_streamed_members(std::span<std::byte> bytes) {
+    constexpr std::uint32_t local_header = 0x04034b50, directory_entry = 0x02014b50;
+    constexpr std::size_t local_size = 30, entry_size = 46, sized_behind = 8;
+    const Records records{bytes};
+    const auto is_there = [&](std::size_t at, std::size_t size, std::uint32_t signature) {
+        return at <= bytes.size() && bytes.size() - at >= size && records.is(at, signature);
+    };
+    each_end_record(records, [&](std::size_t end) {
+        std::size_t entry = records.number(end + 16, 4);
+        for (std::uint64_t left = records.number(end + 10, 2); left > 0; --left) {
+            if (!is_there(entry, entry_size, directory_entry)) return;
+            const std::size_t local = records.number(entry + 42, 4);
+            const bool streamed = is_there(local, local_size, local_header) &&
+                                  (records.number(local + 6, 2) & sized_behind) != 0 &&
+                                  records.number(local + 14, 8) == 0;  // checksum and packed size
+            if (streamed) std::ranges::fill(bytes.subspan(local + 22, 4), std::byte{0});
+            entry += entry_size + records.number(entry + 28, 2) + records.number(entry + 30, 2) +
+                     records.number(entry + 32, 2);
+        }
+    });
 }
 
 std::vector<std::string> zip_names(std::span<const std::byte> bytes) {

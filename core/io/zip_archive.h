@@ -21,6 +21,10 @@ inline constexpr std::size_t max_zip_members = 4096;
 /// Whether the bytes begin as a ZIP archive with a member does.
 bool is_zip(std::span<const std::byte> bytes);
 
+/// Clears the size that some archivers put before a member whose sizes stand behind it, where checksum and
+/// packed size are left out: libzip takes it for a contradiction. Changes nothing else.
+void settle_streamed_members(std::span<std::byte> archive);
+
 /// The names that read_zip gives, whatever the members hold. Throws Error (a clause, no file name) where the
 /// archive is damaged or truncated or has more than max_zip_members members.
 std::vector<std::string> zip_names(std::span<const std::byte> bytes);

@@ -110,6 +110,12 @@ TEST(RezippedProject, WhatDesktopsAddIsPassedOver) {
     }
 }
 
+TEST(RezippedProject, StreamsThatSayTheSizeBeforehand) {
+    std::vector<RawMember> members = members_of(saved());
+    for (RawMember& member : members) member.streamed = true;
+    expect_the_same(members, "streamed");
+}
+
 TEST(RezippedProject, OtherArchivesAreSaidToBeThat) {
     const std::vector<std::pair<std::vector<RawMember>, const char*>> others{
         {{{"notes/today.xml", to_bytes("<w/>")}}, "without the members mimetype and project.json"},

@@ -24,6 +24,8 @@ struct RawMember {
     unsigned method = 0;         ///< 0 stored, 8 deflated
     std::uint32_t size = 0;      ///< said to be this long; 0: as long as `bytes`
     std::uint32_t checksum = 0;  ///< CRC-32; 0: of `bytes`
+    /// As Info-ZIP writes into a pipe: checksum and packed size stand behind the member only.
+    bool streamed = false;
 };
 
 /// A member that inflates to `content`, and says so unless told to lie.
@@ -56,24 +58,30 @@ inline Bytes raw_zip(const std::vector<RawMember>& members) {
         const auto crc = m.checksum
                              ? m.checksum
                              : crc32(0, reinterpret_cast<const Bytef*>(m.bytes.data()), uInt(m.bytes.size()));
-        const auto put_common = [&](Bytes& out) {
-            put(out, 2, m.flags);
+        const auto put_common = [&](Bytes& out, bool behind) {
+            put(out, 2, m.flags | (m.streamed ? 8u : 0u));
             put(out, 2, m.method);
             put(out, 4, 0x00210000);  // midnight, the first of 1980
-            put(out, 4, crc);
-            put(out, 4, m.bytes.size());
+            put(out, 4, behind ? 0 : crc);
+            put(out, 4, behind ? 0 : m.bytes.size());
             put(out, 4, m.size ? m.size : m.bytes.size());
             put(out, 2, m.name.size());
             put(out, 2, 0);  // no extra field
         };
         put(archive, 4, 0x04034b50);
         put(archive, 2, 20);
-        put_common(archive);
+        put_common(archive, m.streamed);
         put_text(archive, m.name);
         archive.insert(archive.end(), m.bytes.begin(), m.bytes.end());
+        if (m.streamed) {
+            put(archive, 4, 0x08074b50);
+            put(archive, 4, crc);
+            put(archive, 4, m.bytes.size());
+            put(archive, 4, m.size ? m.size : m.bytes.size());
+        }
         put(directory, 4, 0x02014b50);
         put(directory, 4, 20 | 20 << 16);
-        put_common(directory);
+        put_common(directory, false);
         put(directory, 6, 0);  // no comment, disk 0, no internal attributes
         put(directory, 4, 0);  // no external ones
         put(directory, 4, offset);
