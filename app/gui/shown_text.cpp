@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gui/app.h"
+#include "gui/text_order.h"
 #include "gui/widgets.h"
 #include "io/printable.h"
 
@@ -39,7 +40,7 @@ std::string with_ellipsis(const std::string& text, const std::vector<std::size_t
 }  // namespace
 
 std::string shown(App& app, std::string_view text) {
-    std::string out = printable(text);
+    std::string out = visual_order(printable(text));
     app.glyphs.ask(out);
     return out;
 }

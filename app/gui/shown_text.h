@@ -11,7 +11,8 @@ namespace probewarp {
 
 struct App;
 
-/// `text` without control characters; its glyphs are there from the next frame on.
+/// `text` without control characters and in the order in which it is drawn; its glyphs are there from the
+/// next frame on.
 std::string shown(App& app, std::string_view text);
 
 /// `text` in `font` at most `width` wide, by an ellipsis in its middle: beginning and ending are what tells

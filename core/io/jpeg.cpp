@@ -165,8 +165,6 @@ void read_header(Decoder& decoder, Bytes bytes, bool salvage) {
     // A progressive file's coefficients are there beside its bytes and its pixels.
     const std::size_t others = bytes.size() + std::size_t(jpeg.image_width) * jpeg.image_height * 4;
     jpeg.mem->max_memory_to_use = long(max_decoding_bytes - others);
-    // The arithmetic decoder makes up zeros without end from no bytes at all, and nobody writes such files.
-    if (jpeg.arith_code) throw Error("is arithmetic-coded; expected a Huffman-coded JPEG file");
     decoder.begun = true;
     decoder.damage.passed_over = salvage;
 }

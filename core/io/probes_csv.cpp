@@ -61,9 +61,10 @@ std::string_view take_line(std::string_view& text) {
     return line;
 }
 
-/// Without spaces, tabs and the spaces that do not break a line, on either side.
+/// Without spaces, tabs and the spaces that do not break a line, in UTF-8 or Windows' old code page, on
+/// either side.
 std::string_view trimmed(std::string_view text) {
-    constexpr std::array<std::string_view, 4> blanks{" ", "\t", "\xc2\xa0", "\xe2\x80\xaf"};
+    constexpr std::array<std::string_view, 5> blanks{" ", "\t", "\xc2\xa0", "\xe2\x80\xaf", "\xa0"};
     for (bool more = true; more;) {
         more = false;
         for (const std::string_view blank : blanks) {
@@ -224,6 +225,7 @@ std::vector<Probe> decode_probes_csv(std::string_view bytes, const Document& doc
     const std::size_t before = grown.probes.size();
     const std::string converted = utf8_of(bytes);
     std::string_view text = converted;
+    while (text.ends_with('\0') || text.ends_with('\x1a')) text.remove_suffix(1);  // old systems' end of file
     char separator = 0;
     bool in_probes = false, seen = false;
     for (int line = 1; !text.empty(); ++line) {
@@ -232,7 +234,7 @@ std::vector<Probe> decode_probes_csv(std::string_view bytes, const Document& doc
         const std::string_view first =
             row_text.substr(std::min(row_text.find_first_not_of(" \t\""), row_text.size()));
         if (first.starts_with('#')) {
-            in_probes = lower_case(first.substr(0, 7)) == "#probes";
+            in_probes = lower_case(trimmed(first.substr(1))).starts_with("probes");
             seen = seen || in_probes;
             continue;
         }

@@ -369,6 +369,7 @@ TEST(ImageFile, JpegTakesItsResolutionFromJfifElseFromExif) {
 }
 
 TEST(ImageFile, JpegOfEveryKind) {
+    EXPECT_EQ(letters(decode(six_greys([](jpeg_compress_struct& j) { j.arith_code = TRUE; }))), "abc/def");
     EXPECT_EQ(letters(decode(six_greys([](jpeg_compress_struct& j) { jpeg_simple_progression(&j); }))),
               "abc/def");
     const auto one_colour = [](J_COLOR_SPACE space, std::vector<std::uint8_t> colour, auto... adjust) {

@@ -93,9 +93,10 @@ constexpr std::array<double, 4> ink{0.2, 0.4, 0.6, 0.1};
 
 std::array<double, 3> colour_of_ink() { return srgb_of_xyz(xyz_of_lab(lab_of_inks(ink))); }
 
+/// Full is no ink, with Adobe's marker as without, as other readers have it.
 File inks_jpeg(bool adobe, const std::function<void(jpeg_compress_struct&)>& adjust = {}) {
     std::vector<int> samples;
-    for (const double v : ink) samples.push_back(int(std::lround(255 * (adobe ? 1 - v : v))));
+    for (const double v : ink) samples.push_back(int(std::lround(255 * (1 - v))));
     return flat_jpeg(JCS_CMYK, samples, [&](jpeg_compress_struct& j) {
         j.write_Adobe_marker = adobe;
         if (adjust) adjust(j);
@@ -132,7 +133,7 @@ TEST(Jpeg, InksAreTurnedUprightToo) {
     for (int y = 0; y < 40; ++y)
         for (int x = 0; x < 16; ++x)
             for (const double v : ink)
-                samples.push_back(y < 8 && x < 8 ? std::uint8_t(std::lround(255 * v)) : 0);
+                samples.push_back(y < 8 && x < 8 ? std::uint8_t(std::lround(255 * (1 - v))) : 255);
     const File file = make_jpeg(16, 40, 4, JCS_CMYK, samples, [](auto& j) { j.write_Adobe_marker = FALSE; });
     const Image image = decode(with_marker(file, join({exif_marker(6), icc_marker(1, 1, inks_profile())})));
     ASSERT_EQ(image.width, 40);

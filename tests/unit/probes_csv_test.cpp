@@ -121,6 +121,13 @@ TEST(ProbesCsv, AnySeparatorAndDecimalSign) {
     expect_as_plain("sep=,\n" + plain, "Excel's first line, a comma");
 }
 
+TEST(ProbesCsv, WhatOldSystemsAdd) {
+    expect_as_plain(plain + "\x1a", "an end of file");
+    expect_as_plain(plain + std::string(3, '\0'), "a block filled up");
+    expect_as_plain(replaced(plain, "#probes", "# Probes"), "a heading with a space");
+    expect_as_plain(replaced(plain, ",", ",\xa0"), "a space of Windows' old code page");
+}
+
 TEST(ProbesCsv, QuotesAndSigns) {
     const std::string rows = plain.substr(0, plain.find("1.5"));
     expect_as_plain(rows + "\"1,5\",-2,0,3,\"4,25\",\" 0,5 \",60\n-300,\"2,5\",\"0,125\",4,-5,0,7\n",
