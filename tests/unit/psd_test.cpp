@@ -389,8 +389,8 @@ TEST(Psd, WithoutAMergedPictureIsRefusedWithTheRemedy) {
         return psd_resource(1057, join({be(4, 1), bytes({real}), be(4, 0), be(4, 0), be(4, 1)}));
     };
     const std::string words =
-        "was saved without a merged picture; expected a PSD saved with Photoshop's \"Maximize "
-        "Compatibility\"";
+        "was saved without a merged picture; expected one: save the PSD again in Photoshop with "
+        "\"Maximize Compatibility\"";
     const File white = bytes({255, 255, 255}), coloured = bytes({200, 40, 60});
     for (const File& layers : {psd_layer_count(1), psd_layer_count_in_block("Lr16", -1, false)})
         for (const File& rows : {white, coloured})
