@@ -66,8 +66,8 @@ constexpr std::size_t embedded_profile = 0x4D424544, srgb = 0x73524742;  // BMP'
 /// BMP's bit for each of ICC's rendering intents.
 constexpr std::array<std::size_t, 4> intent_bits{4, 2, 1, 8};
 
-/// The same BMP with a header of the fifth version that says what its colours are. intent: one of
-/// intent_bits; icc: stands behind the pixels; empty: none
+/// A BMP with a header of the fifth version, which says what the colours are, in the place of its own.
+/// intent: one of intent_bits; icc: stands behind the pixels; empty: none
 std::vector<std::byte> with_colours(Bytes bmp, std::size_t kind, std::size_t intent, Bytes icc) {
     constexpr std::size_t file_header = 14, version_1 = 40, version_5 = 124;
     const std::size_t header = le32(bmp, file_header);

@@ -13,8 +13,8 @@ namespace probewarp {
 /// Error about a file that no reader claims, by its first bytes. Nothing where nobody knows what it is.
 std::optional<std::string> unread_format(Bytes file);
 
-/// The same of a ZIP archive that may be no project, by the names of its members. Nothing where it may be
-/// one.
+/// Such a clause about a ZIP archive, by its mimetype or the names of its members. Nothing where it may be a
+/// project.
 std::optional<std::string> unread_archive(Bytes zip);
 
 /// The formats that are read, for messages.

@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <vector>
+
+#include "temporary_folder.h"
 
 using namespace probewarp;
 namespace fs = std::filesystem;
@@ -14,18 +15,16 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A folder with "sub", "sub.probewarp" (a folder too) and "a.png".
-struct NamesTest : testing::Test {
-    fs::path folder;
+struct NamesTest : ::testing::Test {
+    const probewarp::testing::TemporaryFolder temporary;
+    const fs::path& folder = temporary.path;
     const std::vector<std::string> project{".probewarp"}, pictures{".png", ".jpg"};
 
     NamesTest() {
-        std::string name = (fs::temp_directory_path() / "names-XXXXXX").string();
-        folder = ::mkdtemp(name.data());
         fs::create_directory(folder / "sub");
         fs::create_directory(folder / "dir.probewarp");
         std::ofstream(folder / "a.png") << "a";
     }
-    ~NamesTest() override { fs::remove_all(folder); }
 
     MeantPath saved(std::string_view typed) const { return meant_path(typed, folder, project, true); }
     MeantPath opened(std::string_view typed) const { return meant_path(typed, folder, pictures, false); }
