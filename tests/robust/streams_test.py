@@ -90,7 +90,7 @@ class Streams(unittest.TestCase):
 
     def test_messages_that_are_lost_change_nothing(self):
         cases = (1, ["render", self.at("none.png"), "-o", self.at("x.png")]), (2, ["render"]), (2, ["--nonsense"]), \
-                (0, ["render", self.picture, *PROBE, "-o", self.at("x.png"), "--timings"]), (0, ["info", self.picture]), \
+                (0, ["render", self.picture, *PROBE, "-o", self.at("x.png")]), (0, ["info", self.picture]), \
                 (1, ["info", self.at("none.png")])
         for code, arguments in cases:
             for what, stream in self.unwritable():
@@ -100,6 +100,13 @@ class Streams(unittest.TestCase):
                 with self.subTest(arguments=arguments, closed=closed):
                     lost = arguments[0] == "info" and 1 in closed
                     self.assertEqual(self.run_with(*arguments, closed=closed).returncode, 1 if lost else code)
+
+    def test_timings_that_are_lost_are_told(self):
+        arguments = ["render", self.picture, *PROBE, "-o", self.at("x.png"), "--timings"]
+        for what, stream in self.unwritable():
+            with self.subTest(stream=what):
+                self.assertEqual(self.run_with(*arguments, err=stream).returncode, 1)
+        self.assertEqual(self.run_with(*arguments).returncode, 0)
 
     def test_a_batch_goes_on(self):
         os.mkdir(self.at("in"))
@@ -124,7 +131,7 @@ class Streams(unittest.TestCase):
         for closed in [0], [1], [2], [0, 1], [0, 2], [1, 2], [0, 1, 2]:
             with self.subTest(closed=closed):
                 result = self.run_with("render", self.picture, *PROBE, "-o", self.at("x.png"), "--timings", closed=closed)
-                self.assertEqual(result.returncode, 0, result)
+                self.assertEqual(result.returncode, 1 if 2 in closed else 0, result)  # the timings are lost
                 with open(self.at("good.png"), "rb") as a, open(self.at("x.png"), "rb") as b:
                     self.assertEqual(a.read(), b.read())
                 with open(self.picture, "rb") as f:
