@@ -9,10 +9,16 @@ namespace probewarp {
 
 namespace {
 
-/// Hebrew is the first script that runs from right to left; its characters begin with this byte.
+/// Whether a character of the blocks from Hebrew to Arabic, or of their presentation forms, is in it.
 bool may_run_left(const std::string& text) {
-    return std::any_of(text.begin(), text.end(),
-                       [](char c) { return static_cast<unsigned char>(c) >= 0xD6; });
+    for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+        const auto lead = static_cast<unsigned char>(text[i]), next = static_cast<unsigned char>(text[i + 1]);
+        const bool two_bytes = lead >= 0xD6 && lead <= 0xDF;                      // U+0580 to U+07FF
+        const bool three_bytes = (lead == 0xE0 && next < 0xA4) ||                 // U+0800 to U+08FF
+                                 (lead == 0xEF && next >= 0xAC && next <= 0xBB);  // U+FB00 to U+FEFF
+        if (two_bytes || three_bytes) return true;
+    }
+    return false;
 }
 
 }  // namespace

@@ -640,7 +640,7 @@ class BadFiles(unittest.TestCase):
         row = "0,0,0,1,1,0.5,10\n"
         head = "#vertices ix,iy,x,y\n0,0,0,0\n#probes ix,iy,itheta,x,y,theta,radius\n"
         cases = ["", "\n", "a text", "#vertices\n0,0,0,0\n", row, head + "0,0,0,1,1,0.5\n", head + "0,0,0,1,1,0.5,10,1\n",
-                 head + "0,0,0,1,1,0.5,\n", head + "0;0;0;1;1;0.5;1.000,5\n", head + "0,0,0,1,1,0.5,0x10\n", head + "\0", head + "\x1b[31m",
+                 head + "0,0,0,1,1,0.5,\n", head + "0;0;0;1;1;0.5;1.000,5\n", head + "0,0,0,1,1,0.5,0x10\n", head + "\0,", head + "\x1b[31m",
                  head + ",,,,,,1\n", head + row * 10001, head + "1" * 1000000, head + "," * 1000000 + "1"]
         for value in "nan", "inf", "-inf", "1e999", "-1e999", "1e300", "abc", "", "1e7":
             cases += [head + f"{value},0,0,1,1,0.5,10\n", head + f"0,0,0,1,1,0.5,{value}\n", head + row + f"0,0,{value},1,1,0,10\n"]
