@@ -194,7 +194,8 @@ std::string left_over(const fs::path& path) {
 }
 
 TEST_F(FileTest, TakesNamesOfTheGreatestLength) {
-    for (const std::size_t length : {216, 217, 218, 219, 222, 223, 224, 250, 255}) {
+    for (const std::size_t length :
+         std::initializer_list<std::size_t>{216, 217, 218, 219, 222, 223, 224, 250, 255}) {
         path = folder.path / std::string(length, 'n');
         const std::string name = left_over(path);
         EXPECT_LE(name.size(), 255u);
