@@ -40,7 +40,8 @@ void apply(const BindingOptions& options, Document& document);
 /// empty where there is none.
 std::optional<std::size_t> find_probe_named(const Document& document, const std::string& name);
 
-/// Likewise, but throws UsageError, which begins with `option` and lists the names.
+/// The place that find_probe_named tells. Throws UsageError where there is none: it begins with `option` and
+/// lists the names.
 std::size_t probe_named(const Document& document, const std::string& name, const std::string& option);
 
 }  // namespace probewarp

@@ -29,7 +29,8 @@ std::unique_ptr<ImageEncoding> draw_picture_file(PictureDrawer& drawer, const De
                                                  const View& view, const PictureFile& file,
                                                  const ExportSteps& steps);
 
-/// Likewise by the processor, which has no overlay.
+/// Draws by the processor, which has no overlay, and encodes; finish() of what it returns is the file's rest.
+/// Throws Error.
 std::unique_ptr<ImageEncoding> draw_picture_file(const Deformation& deformation, const PictureFile& file,
                                                  const ExportSteps& steps);
 

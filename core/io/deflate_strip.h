@@ -21,7 +21,9 @@ void open_end(std::vector<std::byte>& deflated, std::size_t raw_bytes);
 /// Error where ISA-L fails.
 std::vector<std::byte> deflate_quickly(Bytes raw, bool whole, int level);
 
-/// Likewise by zlib at its best: of what is the same over and over it makes less than libdeflate does.
+/// A strip, or where `whole` a whole stream, by zlib at its best, which makes less of what is the same over
+/// and over than libdeflate does. Throws std::bad_alloc, and
+/// Error where zlib fails.
 std::vector<std::byte> deflate_by_zlib(Bytes raw, bool whole);
 
 }  // namespace probewarp

@@ -31,7 +31,8 @@ struct PaintBudget {
     void check() const;
 };
 
-/// The same of a 16-bit PNG, counted in `budget`; throws Error where that does not suffice, too.
+/// Reads a 16-bit PNG as paint, counted in `budget`. Throws Error where it is none or the budget does not
+/// suffice.
 PaintMap decode_paint(std::span<const std::byte> bytes, glm::dvec2 extent, PaintBudget& budget);
 
 /// A 16-bit grey PNG. grey: height x width, row-major

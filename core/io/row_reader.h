@@ -25,7 +25,7 @@ class RowReader {
 /// image: the reader's blank()
 void read_all(RowReader& reader, Image& image);
 
-/// Both at once.
+/// The reader's picture with all its rows.
 Image read_whole(RowReader& reader);
 
 /// read_all on a thread of its own, which ends with what is returned. Only the pixels must stay where they

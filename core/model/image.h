@@ -86,7 +86,7 @@ class ArrivingRows {
     struct Times {
         double decoding, waiting;  ///< seconds
     };
-    /// So far.
+    /// How long decoding has taken, and others have waited for it, so far.
     virtual Times times() const = 0;
 };
 

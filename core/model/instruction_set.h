@@ -22,8 +22,8 @@ std::vector<std::string> instruction_sets();
 /// lists them.
 void limit_instruction_set(std::string_view name);
 
-/// The same by the environment's variable; nothing happens where that is unset or empty. To be called
-/// before there are other threads. Throws Error, which names the variable.
+/// Limits the set to what instruction_set_variable names; nothing happens where that is unset or empty. To be
+/// called before there are other threads. Throws Error, which names the variable.
 void limit_instruction_set_by_environment();
 
 }  // namespace probewarp

@@ -65,7 +65,7 @@ std::vector<std::uint8_t> visible_cells(const Image& image, const MeshSettings& 
 
 /// Whether the mesh has that cell of its grid (its place, row by row): one that is left out has no triangle.
 bool has_cell(const Mesh& mesh, std::size_t cell);
-/// Likewise; beside the grid there is none.
+/// Whether the mesh has the cell in that column and row; beside the grid there is none.
 bool has_cell(const Mesh& mesh, int column, int row);
 
 /// The whole grid over [0, width] x [0, height], without probes. Requires cells in [min_cells, max_cells].

@@ -39,7 +39,7 @@ class Rasterizer final : public PictureDrawer {
     bool opaque_;
     std::array<glm::vec2, 4> corners_;      ///< of the picture
     std::vector<glm::vec2> rest_, now_;     ///< of what stays and the mesh over it, where something stays
-    std::vector<std::uint32_t> triangles_;  ///< likewise
+    std::vector<std::uint32_t> triangles_;  ///< #triangles x 3 places in rest_ and now_
     DeformedMesh mesh_;
     std::vector<Image> images_;  ///< the mipmaps, and the picture where it is one pixel wide or high
     std::vector<Level> levels_;

@@ -5,7 +5,6 @@ line that names the file, the right exit code, and no trace on the disk.
     bad_input_test.py --program build/release/app/probewarp [unittest's options]
 """
 
-import argparse
 import io
 import json
 import os
@@ -732,11 +731,8 @@ def sparse(head, size, tail=b""):
 
 def main():
     global program
-    parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--program", required=True)
-    options, rest = parser.parse_known_args()
-    program = harness.Program(options.program)
-    outcome = unittest.main(argv=[sys.argv[0], *rest], exit=False)
+    program = harness.Program(harness.options().program)
+    outcome = unittest.main(exit=False)
     print(f"{program.runs} runs; the slowest took {program.slowest[0]:.2f} s: {' '.join(program.slowest[1])[-120:]!r}; "
           f"the largest {program.largest[0]:.0f} MiB: {' '.join(program.largest[1])[-120:]!r}" if program.slowest else "")
     # A child's peak begins at its parent's: ours must not be what was measured.

@@ -1,8 +1,11 @@
 // Loaded before the program (LD_PRELOAD) it makes what seldom fails fail on demand. The environment variable
 // FAILING_CALLS names a folder; a file in it that comes and goes while the program runs holds a number:
-//   threads   so many threads may be started from then on, counted over the program's life; the next are
-//   refused new       operator new of so many bytes or more finds no memory malloc    malloc, calloc, realloc
-//   and aligned_alloc of so many bytes or more find none
+// - `threads`: so many threads may be started from then on, counted over the program's life; the next are
+//   refused.
+//
+// - `new`: operator new of so many bytes or more finds no memory.
+//
+// - `malloc`: malloc, calloc, realloc and aligned_alloc of so many bytes or more find none.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>

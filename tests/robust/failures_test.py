@@ -5,9 +5,7 @@ with exit code 1, and leaves no half file.
     failures_test.py --program build/release/app/probewarp --failing-calls libfailing_calls.so [unittest's options]
 """
 
-import argparse
 import os
-import sys
 import tempfile
 import unittest
 
@@ -107,15 +105,7 @@ class Failures(unittest.TestCase):
                 self.check(arguments, whole, threads=count)
 
 
-def main():
-    global program, failing_calls
-    parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--program", required=True)
-    parser.add_argument("--failing-calls", required=True)
-    options, rest = parser.parse_known_args()
-    program, failing_calls = harness.Program(options.program), os.path.abspath(options.failing_calls)
-    sys.exit(not unittest.main(argv=[sys.argv[0], *rest], exit=False).result.wasSuccessful())
-
-
 if __name__ == "__main__":
-    main()
+    options = harness.options("--failing-calls")
+    program, failing_calls = harness.Program(options.program), os.path.abspath(options.failing_calls)
+    unittest.main()

@@ -5,10 +5,8 @@ sentence, and not a byte changed anywhere.
     files_apart_test.py --program build/release/app/probewarp [unittest's options]
 """
 
-import argparse
 import os
 import subprocess
-import sys
 import tempfile
 import unittest
 
@@ -148,14 +146,6 @@ class FilesApart(unittest.TestCase):
                 self.assertEqual((result.code, result.err), (0, b""), result)
 
 
-def main():
-    global program
-    parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--program", required=True)
-    options, rest = parser.parse_known_args()
-    program = harness.Program(options.program)
-    sys.exit(not unittest.main(argv=[sys.argv[0], *rest], exit=False).result.wasSuccessful())
-
-
 if __name__ == "__main__":
-    main()
+    program = harness.Program(harness.options().program)
+    unittest.main()

@@ -1,10 +1,12 @@
 """Runs the real program under watch: exit code, what it said, the time and the memory it took."""
 
+import argparse
 import ctypes
 import os
 import resource
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -33,6 +35,15 @@ def without_privileges():
     libc = ctypes.CDLL(None)
     for capability in CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH:
         libc.prctl(PR_CAPBSET_DROP, capability, 0, 0, 0)
+
+
+def options(*more):
+    """The values of --program and of what else a test asks for; unittest's own options are left to it."""
+    parser = argparse.ArgumentParser(add_help=False)
+    for name in ("--program", *more):
+        parser.add_argument(name, required=True)
+    found, sys.argv[1:] = parser.parse_known_args()
+    return found
 
 
 class Program:

@@ -8,13 +8,11 @@ A program that was killed by SIGKILL may leave its temporary (".NAME.*") behind;
 the next save does about it is signals_test.py's). Every other failure has to leave nothing.
 """
 
-import argparse
 import os
 import random
 import resource
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
@@ -274,14 +272,6 @@ def contents(path):
         return f.read()
 
 
-def main():
-    global program
-    parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--program", required=True)
-    options, rest = parser.parse_known_args()
-    program = harness.Program(options.program)
-    sys.exit(not unittest.main(argv=[sys.argv[0], *rest], exit=False).result.wasSuccessful())
-
-
 if __name__ == "__main__":
-    main()
+    program = harness.Program(harness.options().program)
+    unittest.main()

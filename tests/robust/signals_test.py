@@ -5,14 +5,12 @@ signal. What SIGKILL leaves is removed by the next save of the same file, and no
     signals_test.py --program build/release/app/probewarp [unittest's options]
 """
 
-import argparse
 import fcntl
 import os
 import resource
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 import unittest
@@ -203,14 +201,6 @@ class Signals(unittest.TestCase):
             self.assertEqual(contents(self.at("x.png")), contents(self.at("right.png")))
 
 
-def main():
-    global program
-    parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--program", required=True)
-    options, rest = parser.parse_known_args()
-    program = harness.Program(options.program)
-    sys.exit(not unittest.main(argv=[sys.argv[0], *rest], exit=False).result.wasSuccessful())
-
-
 if __name__ == "__main__":
-    main()
+    program = harness.Program(harness.options().program)
+    unittest.main()

@@ -5,11 +5,9 @@ exit code 1.
     streams_test.py --program build/release/app/probewarp [unittest's options]
 """
 
-import argparse
 import os
 import signal
 import subprocess
-import sys
 import tempfile
 import unittest
 
@@ -138,14 +136,6 @@ class Streams(unittest.TestCase):
                     self.assertEqual(f.read(), files.png(16, 12))
 
 
-def main():
-    global program
-    parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--program", required=True)
-    options, rest = parser.parse_known_args()
-    program = harness.Program(options.program)
-    sys.exit(not unittest.main(argv=[sys.argv[0], *rest], exit=False).result.wasSuccessful())
-
-
 if __name__ == "__main__":
-    main()
+    program = harness.Program(harness.options().program)
+    unittest.main()

@@ -4,7 +4,6 @@ document is what it was before, and it can be saved.
 
     window_failures_test.py --program PATH --failing-calls PATH --images DIR --scratch DIR
 """
-import argparse
 import json
 import os
 import pathlib
@@ -18,6 +17,7 @@ import zlib
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "gui"), str(HERE)]
 import files
+import harness
 from desk import PATIENCE, Desk
 
 options = None
@@ -147,14 +147,6 @@ class WindowFailures(unittest.TestCase):
                 desk.close()
 
 
-def main():
-    global options
-    parser = argparse.ArgumentParser(add_help=False)
-    for name in "--program", "--failing-calls", "--images", "--scratch":
-        parser.add_argument(name, required=True)
-    options, rest = parser.parse_known_args()
-    sys.exit(not unittest.main(argv=[sys.argv[0], *rest], exit=False).result.wasSuccessful())
-
-
 if __name__ == "__main__":
-    main()
+    options = harness.options("--failing-calls", "--images", "--scratch")
+    unittest.main()
