@@ -22,8 +22,7 @@ void open_end(std::vector<std::byte>& deflated, std::size_t raw_bytes);
 std::vector<std::byte> deflate_quickly(Bytes raw, bool whole, int level);
 
 /// A strip, or where `whole` a whole stream, by zlib at its best, which makes less of what is the same over
-/// and over than libdeflate does. Throws std::bad_alloc, and
-/// Error where zlib fails.
+/// and over than libdeflate does. Throws std::bad_alloc, and Error where zlib fails.
 std::vector<std::byte> deflate_by_zlib(Bytes raw, bool whole);
 
 }  // namespace probewarp
